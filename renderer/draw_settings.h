@@ -64,7 +64,7 @@ struct DrawSettings {
     LightmapFilter filter = LightmapFilter::Bilinear;
     ToneMap tone = ToneMap::Agx;
     std::optional<float> exposure; // [EV]: light counts 2^exposure times; none: what the picture asks for
-    bool dither = true; // light is dithered to the picture's 8 bits, so that it shows no contours
+    bool dither = true;            // light is dithered to the picture's 8 bits, so that it shows no contours
     glm::vec3 background{0.11f, 0.12f, 0.13f}; // as displayed (sRGB)
     glm::vec3 rangeLow{0.0f},
         rangeHigh{1.0f};   // InspectPosition and InspectHeat: from one end of the scale to the other

@@ -52,6 +52,7 @@ void reflectNothing(Material& material) {
     material.baseColor = glm::vec4(0.0f, 0.0f, 0.0f, material.baseColor.a);
     if (material.alphaMode == AlphaMode::Opaque) material.baseColorTexture = {};
     material.metallicRoughnessTexture = {};
+    material.normalMap = {};
     material.metallic = 0.0f;
     material.roughness = 1.0f;
 }

@@ -19,20 +19,36 @@ struct MaterialUse {
     bool mapped = false; // it has lightmap UVs
     int moved = -1;      // the set that its textures read for TEXCOORD_1 (Primitive::movedUvs)
     uint32_t page = 0;   // of the lightmap
+    std::array<float, 3> tint = {1, 1, 1}; // of the light that it gets as emission
 
     auto operator<=>(const MaterialUse&) const = default;
 };
 
-std::array<TextureRef*, 3> usesOf(Material& material) {
-    return {&material.baseColorTexture, &material.emissionTexture, &material.metallicRoughnessTexture};
-}
-
 // Tells whether a texture of the material, whose UVs moved already, reads TEXCOORD_1 or a set behind it,
 // which needs the one before.
-bool readsSecondSet(Material material) {
-    const auto uses = usesOf(material);
+bool readsSecondSet(const Material& material) {
+    const auto uses = textureUses(material);
     return std::any_of(uses.begin(), uses.end(),
                        [](const TextureRef* use) { return use->texture >= 0 && use->texCoord >= 1; });
+}
+
+// Returns the mean of a primitive's COLOR_0 over its area, with which emission is not multiplied in glTF.
+std::array<float, 3> meanColor(const Primitive& primitive) {
+    if (primitive.colors.empty()) return {1, 1, 1};
+    glm::dvec3 sum(0.0);
+    double area = 0;
+    for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
+        const uint32_t* t = &primitive.indices[i];
+        const glm::dvec3 a(primitive.positions[t[0]]), b(primitive.positions[t[1]]),
+            c(primitive.positions[t[2]]);
+        const double weight = glm::length(glm::cross(b - a, c - a));
+        for (int k = 0; k < 3; ++k)
+            sum += weight / 3 * glm::dvec3(primitive.colors[t[k]]);
+        area += weight;
+    }
+    if (area <= 0) return {1, 1, 1};
+    const glm::vec3 mean(sum / area);
+    return {mean.r, mean.g, mean.b};
 }
 
 class MaterialSplit {
@@ -46,7 +62,8 @@ public:
     int numberOf(const Primitive& primitive, bool mapped, uint32_t page) {
         const size_t original =
             primitive.material < 0 ? originals_.size() - 1 : static_cast<size_t>(primitive.material);
-        const MaterialUse use{original, mapped, primitive.movedUvs, mapped ? page : 0};
+        MaterialUse use{original, mapped, primitive.movedUvs, mapped ? page : 0};
+        if (!mapped || originals_[original].pane) use.tint = meanColor(primitive);
         const auto [place, isNew] = numbers_.try_emplace(use, static_cast<int>(materials_.size()));
         if (isNew) add(use);
         return place->second;
@@ -58,9 +75,11 @@ public:
 private:
     void add(const MaterialUse& use) {
         Material material = originals_[use.original];
-        for (TextureRef* texture : usesOf(material))
+        material.occlusionMap = {}; // the lightmap has it, and engines would darken that by it once more
+        for (TextureRef* texture : textureUses(material))
             texture->texCoord = setOf(use.moved, *texture);
-        if (!use.mapped || material.pane) material = shining(material);
+        if (!use.mapped || material.pane)
+            material = shining(material, {use.tint[0], use.tint[1], use.tint[2]});
         // Engines find materials by name, and some have the name in a line of their code.
         std::replace_if(
             material.name.begin(), material.name.end(), [](unsigned char c) { return c < ' '; }, ' ');
@@ -72,10 +91,10 @@ private:
         pages_.push_back(use.page);
         materials_.push_back(std::move(material));
     }
-    Material shining(Material material) const {
+    Material shining(Material material, const glm::vec3& tint) const {
         const float albedo = 1.0f - engineMetallic(material.metallic, material.roughness);
         if (material.emission == glm::vec3(0.0f)) {
-            material.emission = glm::vec3(material.baseColor) * albedo * ambient_;
+            material.emission = glm::vec3(material.baseColor) * tint * albedo * ambient_;
             material.emissionTexture = material.baseColorTexture;
         }
         return material;
@@ -119,6 +138,7 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
     out.scene.path = scene.path;
     out.scene.images = std::move(placed.images);
     out.scene.textures = std::move(placed.textures);
+    out.scene.keptTextures = std::move(placed.keptTextures);
     out.scene.cameras = std::move(placed.cameras);
     out.scene.materials = std::move(split.materials());
     out.lit = std::move(split.lit());
@@ -134,8 +154,7 @@ std::vector<std::string> meshesWithThirdSet(const Scene& scene) {
     for (const Mesh& mesh : scene.meshes)
         if (std::any_of(mesh.primitives.begin(), mesh.primitives.end(), [&](const Primitive& primitive) {
                 if (primitive.material < 0) return false;
-                Material material = scene.materials[static_cast<size_t>(primitive.material)];
-                const auto uses = usesOf(material);
+                const auto uses = textureUses(scene.materials[static_cast<size_t>(primitive.material)]);
                 return std::any_of(uses.begin(), uses.end(), [&](const TextureRef* use) {
                     return use->texture >= 0 && setOf(primitive.movedUvs, *use) == 2;
                 });
@@ -146,25 +165,37 @@ std::vector<std::string> meshesWithThirdSet(const Scene& scene) {
     return names;
 }
 
+namespace {
+
+// Makes the number of a used thing, or -1, that which it has among the used ones, where it goes.
+template<typename T>
+void renumber(int& number, std::vector<T>& all, std::map<int, int>& numbers, std::vector<T>& used) {
+    if (number < 0) return;
+    const auto [place, isNew] = numbers.try_emplace(number, static_cast<int>(used.size()));
+    if (isNew) used.push_back(std::move(all[static_cast<size_t>(number)]));
+    number = place->second;
+}
+
+} // namespace
+
 void dropUnusedTextures(Scene& scene) {
-    std::map<int, int> textures, images; // from old numbers to new ones
+    std::map<int, int> textures, kept, images; // from old numbers to new ones
     std::vector<Texture> usedTextures;
+    std::vector<KeptTexture> usedKept;
     std::vector<Image> usedImages;
-    for (Material& material : scene.materials)
-        for (TextureRef* use : usesOf(material)) {
-            if (use->texture < 0) continue;
-            const auto [place, isNew] =
-                textures.try_emplace(use->texture, static_cast<int>(usedTextures.size()));
-            if (isNew) usedTextures.push_back(scene.textures[static_cast<size_t>(use->texture)]);
-            use->texture = place->second;
-        }
-    for (Texture& texture : usedTextures) {
-        if (texture.image < 0) continue;
-        const auto [place, isNew] = images.try_emplace(texture.image, static_cast<int>(usedImages.size()));
-        if (isNew) usedImages.push_back(std::move(scene.images[static_cast<size_t>(texture.image)]));
-        texture.image = place->second;
+    for (Material& material : scene.materials) {
+        for (KeptMap* map : {&material.normalMap, &material.occlusionMap})
+            renumber(map->use.texture, scene.keptTextures, kept, usedKept);
+        for (TextureRef* use :
+             {&material.baseColorTexture, &material.emissionTexture, &material.metallicRoughnessTexture})
+            renumber(use->texture, scene.textures, textures, usedTextures);
     }
+    for (KeptTexture& texture : usedKept)
+        renumber(texture.texture, scene.textures, textures, usedTextures);
+    for (Texture& texture : usedTextures)
+        renumber(texture.image, scene.images, images, usedImages);
     scene.textures = std::move(usedTextures);
+    scene.keptTextures = std::move(usedKept);
     scene.images = std::move(usedImages);
 }
 

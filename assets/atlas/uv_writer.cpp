@@ -10,9 +10,6 @@ namespace relume {
 
 namespace {
 
-constexpr TextureRef Material::*kTextureUses[] = {&Material::baseColorTexture, &Material::emissionTexture,
-                                                  &Material::metallicRoughnessTexture};
-
 /// A vertex with its place in the atlas: where a tube is cut open, it has two in one chart.
 struct PlacedVertex {
     uint32_t index, chart;
@@ -86,15 +83,20 @@ Mesh withUvs(const Mesh& mesh, const CornerUvs& uvs) {
 
 namespace {
 
-/// Tells which sets of UVs a primitive's textures use.
+/// Tells which sets of UVs a primitive's textures use, kept ones last. Where these ask for a third set, what
+/// bakes need goes before them.
 std::array<bool, 3> usedSets(const Scene& scene, const Primitive& primitive) {
-    std::array<bool, 3> used{};
-    if (primitive.material < 0) return used;
+    std::array<bool, 3> baked{}, all{};
+    if (primitive.material < 0) return baked;
     const Material& material = scene.materials[static_cast<size_t>(primitive.material)];
-    for (TextureRef Material::*use : kTextureUses)
-        if ((material.*use).texture >= 0)
-            used[static_cast<size_t>(setOf(primitive.movedUvs, material.*use))] = true;
-    return used;
+    for (const TextureRef* use : textureUses(material)) {
+        if (use->texture < 0) continue;
+        const auto set = static_cast<size_t>(setOf(primitive.movedUvs, *use));
+        const bool kept = use == &material.normalMap.use || use == &material.occlusionMap.use;
+        all[set] = true;
+        if (!kept) baked[set] = true;
+    }
+    return all[0] && all[1] && all[2] ? baked : all;
 }
 
 } // namespace

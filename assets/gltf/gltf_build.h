@@ -83,4 +83,8 @@ void buildSky(Build& build);
 /// missing or cannot be decoded; warns where it is damaged. Throws Error where it is too large.
 std::optional<Image> decodeImage(Build& build, size_t index);
 
+/// Returns the bytes of an image that the file holds or names; nothing, and in `problem` what is wrong with
+/// it, where there are none.
+std::vector<unsigned char> imageBytes(const Build& build, const nlohmann::json& source, std::string& problem);
+
 } // namespace relume::gltf

@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/gltf/gltf_batches.h"
+#include "assets/gltf/gltf_kept.h"
 #include "assets/gltf/gltf_light_json.h"
 #include "assets/gltf/gltf_material_json.h"
 #include "assets/gltf/gltf_png.h"
@@ -79,6 +80,8 @@ private:
     /// Returns the number of a material's copy whose textures read another set than TEXCOORD_1.
     int movedMaterial(int material, int set);
     void addMeshes();
+    int addPicture(std::vector<uint8_t> picture, const std::string& name);
+    void addTexture(const Texture& texture, int image, bool mipmaps);
     void addTextures();
     void addNodes();
     Json addBatch(const gltf::Batch& batch);
@@ -94,7 +97,9 @@ private:
     GlbLook look_;
     Json json_ = Json::object();
     Stream streams_[kStreamCount];
+    Json samplers_ = Json::array();
     std::vector<std::vector<uint8_t>> pngs_; // or JPEG, as it came
+    std::vector<int> kept_;                  // textures of the file by Scene::keptTextures
     std::vector<std::pair<int, int>> moved_; // materials and sets of such copies behind all materials
     std::vector<int> meshIndices_;           // of the file by Scene::meshes, -1 for one without triangles
     gltf::UsedExtensions extensions_;
@@ -199,31 +204,44 @@ int GlbWriter::movedMaterial(int material, int set) {
     return static_cast<int>(scene_.materials.size()) + static_cast<int>(place);
 }
 
+int GlbWriter::addPicture(std::vector<uint8_t> picture, const std::string& name) {
+    Json out; // its bufferView comes with the buffers
+    if (!name.empty()) out["name"] = name;
+    out["mimeType"] = picture.front() == kPngBegin ? "image/png" : "image/jpeg";
+    json_["images"].push_back(std::move(out));
+    pngs_.push_back(std::move(picture));
+    return static_cast<int>(pngs_.size()) - 1;
+}
+
+void GlbWriter::addTexture(const Texture& texture, int image, bool mipmaps) {
+    Json sampler = gltf::samplerJson(texture, mipmaps);
+    size_t index = 0;
+    while (index < samplers_.size() && samplers_[index] != sampler)
+        ++index;
+    if (index == samplers_.size()) samplers_.push_back(std::move(sampler));
+    Json out;
+    out["sampler"] = index;
+    if (image >= 0) out["source"] = image;
+    json_["textures"].push_back(std::move(out));
+}
+
 void GlbWriter::addTextures() {
     for (size_t i = 0; i < scene_.images.size(); ++i) {
         const Image& image = scene_.images[i];
         const bool ready = i < pictures_.size() && !pictures_[i].empty();
-        pngs_.push_back(ready ? pictures_[i] : gltf::encodePng(image));
-        Json out; // its bufferView comes with the buffers
-        if (!image.name.empty()) out["name"] = image.name;
-        out["mimeType"] = pngs_.back().front() == kPngBegin ? "image/png" : "image/jpeg";
-        json_["images"].push_back(std::move(out));
+        addPicture(ready ? pictures_[i] : gltf::encodePng(image), image.name);
     }
-    Json samplers = Json::array();
     for (const Texture& texture : scene_.textures) {
         const auto number = static_cast<int>(&texture - scene_.textures.data());
         const bool isMap = std::find(look_.maps.begin(), look_.maps.end(), number) != look_.maps.end();
-        Json sampler = gltf::samplerJson(texture, !isMap);
-        size_t index = 0;
-        while (index < samplers.size() && samplers[index] != sampler)
-            ++index;
-        if (index == samplers.size()) samplers.push_back(std::move(sampler));
-        Json out;
-        out["sampler"] = index;
-        if (texture.image >= 0) out["source"] = texture.image;
-        json_["textures"].push_back(std::move(out));
+        addTexture(texture, texture.image, !isMap);
     }
-    if (!samplers.empty()) json_["samplers"] = std::move(samplers);
+    for (const KeptTexture& texture : scene_.keptTextures) {
+        kept_.push_back(texture.texture >= 0 ? texture.texture : static_cast<int>(json_["textures"].size()));
+        if (texture.texture < 0)
+            addTexture(texture.sampling, addPicture(gltf::keptPicture(texture), texture.name), true);
+    }
+    if (!samplers_.empty()) json_["samplers"] = samplers_;
 }
 
 Json GlbWriter::addBatch(const gltf::Batch& batch) {
@@ -358,13 +376,12 @@ std::vector<uint8_t> GlbWriter::write() {
     addMeshes();
     addTextures();
     for (const Material& m : scene_.materials)
-        json_["materials"].push_back(gltf::materialJson(m, extensions_));
+        json_["materials"].push_back(gltf::materialJson(m, kept_, extensions_));
     for (const auto& [original, set] : moved_) {
         Material copy = scene_.materials[static_cast<size_t>(original)];
-        for (TextureRef* use :
-             {&copy.baseColorTexture, &copy.emissionTexture, &copy.metallicRoughnessTexture})
+        for (TextureRef* use : textureUses(copy))
             use->texCoord = setOf(set, *use);
-        json_["materials"].push_back(gltf::materialJson(copy, extensions_));
+        json_["materials"].push_back(gltf::materialJson(copy, kept_, extensions_));
     }
     const size_t ownMaterials = scene_.materials.size();
     for (size_t i = 0; i < ownMaterials + moved_.size(); ++i)

@@ -127,8 +127,9 @@ bool decode(const Bytes& bytes, int index, Image& image) {
     return true;
 }
 
-/// Returns the bytes of an image that the file holds or names, or what is wrong with them.
-Bytes bytesOf(const Build& build, const json& source, std::string& problem) {
+} // namespace
+
+std::vector<unsigned char> imageBytes(const Build& build, const json& source, std::string& problem) {
     Bytes bytes;
     problem = "is missing or empty";
     const int view = indexBelow(source, "bufferView", build.model.bufferViews.size());
@@ -155,8 +156,6 @@ Bytes bytesOf(const Build& build, const json& source, std::string& problem) {
     return bytes;
 }
 
-} // namespace
-
 std::optional<Image> decodeImage(Build& build, size_t index) {
     const json& source = build.images[index];
     const std::string uri = source.value("uri", ""), name = source.value("name", "");
@@ -164,7 +163,7 @@ std::optional<Image> decodeImage(Build& build, size_t index) {
     const std::string where = named ? fmt::format("image file {}", inQuotes(uri))
                                     : fmt::format("image {} {}", index, inQuotes(name));
     std::string problem;
-    Bytes bytes = bytesOf(build, source, problem);
+    Bytes bytes = imageBytes(build, source, problem);
     if (bytes.empty()) {
         build.warnings.add(where, problem + ", materials use their factors alone: put it beside the scene or "
                                             "export with embedded images");

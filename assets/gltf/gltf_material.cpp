@@ -1,4 +1,5 @@
 #include "assets/gltf/gltf_build.h"
+#include "assets/gltf/gltf_kept.h"
 
 #include "assets/base/watch.h"
 #include "assets/gltf/file/gltf_value.h"
@@ -24,13 +25,21 @@ class MaterialBuilder {
 public:
     explicit MaterialBuilder(Build& build)
         : build_(build), textureIndex_(build.textures.size(), kNotUsed),
-          imageIndex_(build.images.size(), kNotUsed) {}
+          imageIndex_(build.images.size(), kNotUsed), keptIndex_(build.textures.size(), kNotUsed) {}
     Material material(const json& source, const std::string& where);
+    /// Adds what is kept of a material for files that are written. It comes behind all materials: what one of
+    /// them reads is not kept twice.
+    void addKept(const json& source, Material& material);
 
 private:
     static constexpr int kNotUsed = -1, kUnusable = -2;
 
     TextureRef reference(const json& holder, const char* key);
+    TextureRef use(const json& info, int texture);
+    KeptMap keptMap(const json& holder, const char* key, const char* amount);
+    int keptTexture(size_t source);
+    bool readKept(size_t source, KeptTexture& texture);
+    void readSampler(const json& texture, Texture& to) const;
     int texture(size_t source);
     int image(size_t source);
     std::vector<size_t> imagesOf(const json& texture) const;
@@ -41,7 +50,8 @@ private:
     double transmissionOf(const json& source, const Material& material);
 
     Build& build_;
-    std::vector<int> textureIndex_, imageIndex_; // of the file -> of the scene, or one of the constants above
+    // Of the file -> of the scene, or one of the constants above.
+    std::vector<int> textureIndex_, imageIndex_, keptIndex_;
 };
 
 std::string materialLabel(const json& material, size_t index) {
@@ -132,6 +142,15 @@ void MaterialBuilder::warnAboutTexture(const json& texture, size_t index) {
                               "textures as one of these");
 }
 
+void MaterialBuilder::readSampler(const json& texture, Texture& to) const {
+    const int sampler = indexBelow(texture, "sampler", build_.samplers.size());
+    if (sampler < 0) return;
+    const json& how = build_.samplers[static_cast<size_t>(sampler)];
+    to.wrapS = wrapOf(how, "wrapS");
+    to.wrapT = wrapOf(how, "wrapT");
+    to.nearest = numberOr(how, "magFilter", 0.0) == kNearest;
+}
+
 int MaterialBuilder::texture(size_t source) {
     int& known = textureIndex_[source];
     if (known != kNotUsed) return known;
@@ -142,13 +161,7 @@ int MaterialBuilder::texture(size_t source) {
         texture.image = image(images[i]);
     if (images.empty()) warnAboutTexture(from, source);
     if (texture.image < 0) return known = kUnusable;
-    const int sampler = indexBelow(from, "sampler", build_.samplers.size());
-    if (sampler >= 0) {
-        const json& how = build_.samplers[static_cast<size_t>(sampler)];
-        texture.wrapS = wrapOf(how, "wrapS");
-        texture.wrapT = wrapOf(how, "wrapT");
-        texture.nearest = numberOr(how, "magFilter", 0.0) == kNearest;
-    }
+    readSampler(from, texture);
     build_.scene.textures.push_back(texture);
     return known = static_cast<int>(build_.scene.textures.size()) - 1;
 }
@@ -159,18 +172,64 @@ TextureRef MaterialBuilder::reference(const json& holder, const char* key) {
     const json* info = memberOf(holder, key);
     const int index = info ? indexBelow(*info, "index", build_.textures.size()) : -1;
     if (index < 0) return ref;
-    ref.texture = std::max(texture(static_cast<size_t>(index)), -1);
-    if (ref.texture < 0) return ref;
-    double texCoord = numberOr(*info, "texCoord", 0.0);
-    if (const json* extension = extensionOf(*info, "KHR_texture_transform")) {
+    return use(*info, std::max(texture(static_cast<size_t>(index)), -1));
+}
+
+TextureRef MaterialBuilder::use(const json& info, int texture) {
+    TextureRef ref;
+    ref.texture = texture;
+    if (texture < 0) return ref;
+    double texCoord = numberOr(info, "texCoord", 0.0);
+    if (const json* extension = extensionOf(info, "KHR_texture_transform")) {
         ref.transform = transformMatrix(*extension);
         texCoord = numberOr(*extension, "texCoord", texCoord);
     }
     if (texCoord >= 3.0)
-        build_.warnings.add(fmt::format("texture {}", index),
+        build_.warnings.add(fmt::format("texture {}", numberOr(info, "index", 0.0)),
                             "uses TEXCOORD_3 or higher, TEXCOORD_0 is taken");
     ref.texCoord = texCoord == 1.0 ? 1 : texCoord == 2.0 ? 2 : 0;
     return ref;
+}
+
+/// Finds the picture of a kept texture. Returns false, and warns, where there is none that can be kept.
+bool MaterialBuilder::readKept(size_t source, KeptTexture& texture) {
+    std::vector<size_t> images = imagesOf(build_.textures[source]);
+    std::reverse(images.begin(), images.end()); // what glTF itself knows is written as it is
+    for (const size_t image : images)
+        if (keepImage(build_, image, texture)) return true;
+    build_.warnings.add(
+        fmt::format("texture {}", source),
+        "has no PNG, JPEG or WebP image that is there, and is left out of files that are written");
+    return false;
+}
+
+int MaterialBuilder::keptTexture(size_t source) {
+    int& known = keptIndex_[source];
+    if (known != kNotUsed) return known;
+    KeptTexture texture;
+    texture.texture = std::max(textureIndex_[source], -1);
+    if (texture.texture < 0) {
+        readSampler(build_.textures[source], texture.sampling);
+        if (textureIndex_[source] == kUnusable || !readKept(source, texture)) return known = kUnusable;
+    }
+    build_.scene.keptTextures.push_back(std::move(texture));
+    return known = static_cast<int>(build_.scene.keptTextures.size()) - 1;
+}
+
+KeptMap MaterialBuilder::keptMap(const json& holder, const char* key, const char* amount) {
+    KeptMap map;
+    const json* info = memberOf(holder, key);
+    const int index = info ? indexBelow(*info, "index", build_.textures.size()) : -1;
+    if (index < 0) return map;
+    map.use = use(*info, std::max(keptTexture(static_cast<size_t>(index)), -1));
+    const double value = numberOr(*info, amount, 1.0);
+    if (std::isfinite(value)) map.amount = static_cast<float>(value);
+    return map;
+}
+
+void MaterialBuilder::addKept(const json& source, Material& material) {
+    material.normalMap = keptMap(source, "normalTexture", "scale");
+    material.occlusionMap = keptMap(source, "occlusionTexture", "strength");
 }
 
 /// Reads the base colour and the metalness: those of the core, of specular-glossiness, whose diffuse colour
@@ -185,6 +244,9 @@ void MaterialBuilder::readBase(const json& source, const std::string& where, Mat
         material.baseColor = factorOf(*glossy, "diffuseFactor");
         material.baseColorTexture = reference(*glossy, "diffuseTexture");
         material.metallic = 0.0f;
+        // A texture says it texel by texel, and a factor of it means nothing alone.
+        if (!memberOf(*glossy, "specularGlossinessTexture"))
+            material.roughness = 1.0f - bounded(numberOr(*glossy, "glossinessFactor", 1.0), 0.0, 1.0);
         return;
     }
     material.baseColor = factorOf(pbr, "baseColorFactor");
@@ -257,6 +319,8 @@ void buildMaterials(Build& build) {
         for (const std::string& problem : limitMaterial(build.scene.materials.back()))
             build.warnings.add(where, problem);
     }
+    for (size_t i = 0; i < build.materials.size(); ++i)
+        builder.addKept(build.materials[i], build.scene.materials[i]);
 }
 
 void markPanes(Build& build) {

@@ -52,9 +52,18 @@ Json textureInfo(const TextureRef& ref, const std::string& materialName, UsedExt
     return info;
 }
 
+void addKeptMap(Json& material, const char* key, const char* amount, const KeptMap& map,
+                std::span<const int> kept, UsedExtensions& used) {
+    if (map.use.texture < 0) return;
+    TextureRef use = map.use;
+    use.texture = kept[static_cast<size_t>(use.texture)];
+    material[key] = textureInfo(use, material.value("name", ""), used);
+    if (map.amount != 1.0f) material[key][amount] = map.amount;
+}
+
 } // namespace
 
-nlohmann::ordered_json materialJson(const Material& m, UsedExtensions& used) {
+nlohmann::ordered_json materialJson(const Material& m, std::span<const int> kept, UsedExtensions& used) {
     Json out;
     if (!m.name.empty()) out["name"] = m.name;
     Json pbr = Json::object();
@@ -66,6 +75,8 @@ nlohmann::ordered_json materialJson(const Material& m, UsedExtensions& used) {
     if (m.metallicRoughnessTexture.texture >= 0)
         pbr["metallicRoughnessTexture"] = textureInfo(m.metallicRoughnessTexture, m.name, used);
     out["pbrMetallicRoughness"] = std::move(pbr);
+    addKeptMap(out, "normalTexture", "scale", m.normalMap, kept, used);
+    addKeptMap(out, "occlusionTexture", "strength", m.occlusionMap, kept, used);
 
     const float brightest = std::max({m.emission.r, m.emission.g, m.emission.b});
     if (brightest > 0.0f) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <span>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -13,9 +14,11 @@ namespace relume::gltf {
 /// The extensions that a file uses, by name.
 using UsedExtensions = std::map<std::string, bool>;
 
-/// Returns a material as glTF has it, without what programs for lightmaps read. Throws Error, naming the
-/// material, for a texture transform that glTF cannot store.
-nlohmann::ordered_json materialJson(const Material& material, UsedExtensions& used);
+/// Returns a material as glTF has it, without what programs for lightmaps read; `kept` has the numbers of
+/// kept textures in the file. Throws Error, naming the material, for a texture transform that glTF cannot
+/// store.
+nlohmann::ordered_json materialJson(const Material& material, std::span<const int> kept,
+                                    UsedExtensions& used);
 
 /// Adds to a material's JSON what `look` says of it.
 void addLook(nlohmann::ordered_json& json, const GlbLook& look, size_t material, UsedExtensions& used);

@@ -240,9 +240,9 @@ void PrimitiveBuilder::mendNormals(Primitive& primitive) const {
 bool PrimitiveBuilder::readsThirdSet(const Primitive& primitive) const {
     if (primitive.material < 0) return false;
     const Material& material = build_.scene.materials[static_cast<size_t>(primitive.material)];
-    const auto reads = [](const TextureRef& use) { return use.texture >= 0 && use.texCoord == 2; };
-    return reads(material.baseColorTexture) || reads(material.emissionTexture) ||
-           reads(material.metallicRoughnessTexture);
+    const auto uses = textureUses(material);
+    return std::any_of(uses.begin(), uses.end(),
+                       [](const TextureRef* use) { return use->texture >= 0 && use->texCoord == 2; });
 }
 
 void PrimitiveBuilder::warnUnused(const Primitive& primitive) const {

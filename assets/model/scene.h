@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,6 +33,22 @@ struct TextureRef {
     glm::mat3 transform{1.0f};
 };
 
+/// A texture that only files that are written tell on: its picture is not decoded. It lies in a file of the
+/// scene or beside it.
+struct KeptTexture {
+    int texture = -1;          // Scene::textures' that is the same; -1: what follows
+    Texture sampling;          // without an image
+    std::string name;          // of the picture
+    std::vector<uint8_t> file; // PNG, JPEG or WebP; empty: it stands at `path`
+    std::string path;
+};
+
+/// How a material uses a kept texture.
+struct KeptMap {
+    TextureRef use;      // into Scene::keptTextures
+    float amount = 1.0f; // scale of a normal map, strength of an occlusion map
+};
+
 enum class AlphaMode : uint32_t { Opaque, Mask, Blend };
 
 struct Material {
@@ -47,7 +64,19 @@ struct Material {
     bool doubleSided = false;
     float transmission = 0.0f; // of KHR_materials_transmission, the mean of its texture included
     bool pane = false; // light passes it (panes.h); decided when the scene is read, whatever is edited
+    // These change how a surface looks and not what light it sends.
+    KeptMap normalMap, occlusionMap;
 };
+
+/// Returns all uses of textures by a material, kept ones last.
+inline std::array<TextureRef*, 5> textureUses(Material& material) {
+    return {&material.baseColorTexture, &material.emissionTexture, &material.metallicRoughnessTexture,
+            &material.normalMap.use, &material.occlusionMap.use};
+}
+inline std::array<const TextureRef*, 5> textureUses(const Material& material) {
+    return {&material.baseColorTexture, &material.emissionTexture, &material.metallicRoughnessTexture,
+            &material.normalMap.use, &material.occlusionMap.use};
+}
 
 /// Holds triangles of one material. Arrays other than positions may be empty where the file has none. Normals
 /// never are after import: where they are missing, the triangles become flat, which splits vertices.
@@ -150,6 +179,7 @@ struct Scene {
     std::string path; // as given by the user; "" for a generated scene
     std::vector<Image> images;
     std::vector<Texture> textures;
+    std::vector<KeptTexture> keptTextures;
     std::vector<Material> materials;
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;

@@ -66,6 +66,40 @@ TEST(EngineScene, EachObjectGetsAMeshWithItsOwnPartOfTheLightmap) {
     EXPECT_EQ(out.scene.meshes[static_cast<size_t>(out.scene.instances[1].mesh)].name, "Right");
 }
 
+// Engines darken the lightmap by an occlusion map, which it has in it already.
+TEST(EngineScene, NormalMapsAreKeptAndOcclusionIsLeftOut) {
+    ThreeObjects three;
+    Scene& scene = three.scene;
+    scene.images = {{"Unused", 1, 1, {0, 0, 0, 255}}, {"Shared", 1, 1, {9, 9, 9, 255}}};
+    scene.textures.resize(2);
+    scene.textures[0].image = 0;
+    scene.textures[1].image = 1;
+    scene.keptTextures.resize(3);
+    scene.keptTextures[1].texture = 1;
+    scene.keptTextures[2].name = "Bumps";
+    scene.materials.push_back(scene.materials[0]);
+    scene.materials[0].normalMap.use.texture = 2;
+    scene.materials[0].normalMap.amount = 0.5f;
+    scene.materials[0].occlusionMap.use.texture = 0;
+    scene.materials[1].normalMap.use.texture = 1;
+    scene.meshes.push_back({"Other", {mappedSquare(1)}});
+    scene.instances[1].mesh = 1;
+    const Scene out = engineScene(scene, three.atlas, kAmbient).scene;
+    ASSERT_EQ(out.keptTextures.size(), 2u);
+    ASSERT_EQ(out.textures.size(), 1u);
+    const auto materialOf = [&](size_t object) -> const Material& {
+        const auto mesh = static_cast<size_t>(out.instances[object].mesh);
+        return out.materials[static_cast<size_t>(out.meshes[mesh].primitives[0].material)];
+    };
+    const KeptMap left = materialOf(0).normalMap, right = materialOf(1).normalMap;
+    EXPECT_EQ(out.keptTextures[static_cast<size_t>(left.use.texture)].name, "Bumps");
+    EXPECT_EQ(left.amount, 0.5f);
+    const KeptTexture& shared = out.keptTextures[static_cast<size_t>(right.use.texture)];
+    ASSERT_EQ(shared.texture, 0);
+    EXPECT_EQ(out.images[static_cast<size_t>(out.textures[0].image)].name, "Shared");
+    EXPECT_EQ(materialOf(0).occlusionMap.use.texture, -1);
+}
+
 TEST(EngineScene, LightsAndSkyAreLeftOutAsTheLightmapHasThem) {
     const ThreeObjects three;
     const EngineScene out = engineScene(three.scene, three.atlas, kAmbient);
@@ -88,6 +122,28 @@ TEST(EngineScene, WhatHasNoLightmapUvsShinesAsTheMeanLightMakesIt) {
     EXPECT_EQ(out.scene.materials[materialOf(2)].emission, glm::vec3(1.0f, 1.0f, 8.0f));
     // Engines find materials by name.
     EXPECT_NE(out.scene.materials[materialOf(0)].name, out.scene.materials[materialOf(2)].name);
+}
+
+// Vertex colours are in the base colour of glTF and not in its emission. Two triangles of 1 and 3 times the
+// area: a quarter of the first one's colour and three of the other's.
+TEST(EngineScene, WhatShinesInPlaceOfTheLightmapHasItsVertexColours) {
+    ThreeObjects three;
+    Primitive& square = three.scene.meshes[0].primitives[0];
+    square.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}, {3, 0, 0}, {0, 1, 0}};
+    square.indices = {0, 1, 2, 3, 4, 5};
+    square.normals.assign(6, glm::vec3(0, 0, 1));
+    square.texCoord0.assign(6, glm::vec2(0));
+    square.texCoord1.assign(6, glm::vec2(0));
+    square.colors.assign(3, glm::vec4(1, 0, 0, 1));
+    square.colors.resize(6, glm::vec4(0, 1, 0.5f, 1));
+    const EngineScene out = engineScene(three.scene, three.atlas, kAmbient);
+    const auto emissionOf = [&](size_t object) {
+        const auto mesh = static_cast<size_t>(out.scene.instances[object].mesh);
+        return out.scene.materials[static_cast<size_t>(out.scene.meshes[mesh].primitives[0].material)]
+            .emission;
+    };
+    EXPECT_EQ(emissionOf(2), glm::vec3(0.25f, 0.75f, 3.0f)) << "of 1 1 8";
+    EXPECT_EQ(emissionOf(0), glm::vec3(0.0f));
 }
 
 TEST(EngineScene, PanesAreNotLitByTheLightmap) {

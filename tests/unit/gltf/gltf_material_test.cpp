@@ -98,7 +98,8 @@ TEST_F(GltfMaterial, OfSpecularGlossinessTheDiffuseColourIsTheBase) {
     GlbBuilder b = painted(extended("KHR_materials_pbrSpecularGlossiness",
                                     {{"diffuseFactor", {.1, .2, .3, .4}},
                                      {"diffuseTexture", {{"index", 0}, {"texCoord", 1}}},
-                                     {"specularFactor", {1, 1, 1}}},
+                                     {"specularFactor", {1, 1, 1}},
+                                     {"glossinessFactor", .25}},
                                     {{"pbrMetallicRoughness", {{"baseColorFactor", {1, 0, 0, 1}}}}}));
     b.json["images"] = json::array({picture(b, test::kTwoPixels, "image/png")});
     b.json["textures"] = {{{"source", 0}}};
@@ -106,6 +107,7 @@ TEST_F(GltfMaterial, OfSpecularGlossinessTheDiffuseColourIsTheBase) {
     const Material material = load(b).materials.at(0);
     EXPECT_EQ(material.baseColor, glm::vec4(.1f, .2f, .3f, .4f));
     EXPECT_EQ(material.metallic, 0.0f);
+    EXPECT_EQ(material.roughness, 0.75f) << "of highlights in files that are written";
     EXPECT_EQ(material.baseColorTexture.texture, 0);
     EXPECT_EQ(material.baseColorTexture.texCoord, 1);
     // An edit goes to where the colour comes from; white is written too, or the extension would be gone.
