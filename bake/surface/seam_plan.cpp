@@ -1,6 +1,7 @@
 #include "bake/surface/seam_plan.h"
 
 #include "assets/base/error.h"
+#include "bake/surface/seam_sources.h"
 
 #include <algorithm>
 #include <span>
@@ -16,8 +17,8 @@ constexpr uint32_t kNeighbours = 8;
 class SeamPlanBuilder {
 public:
     SeamPlanBuilder(const PatchSet& set, uint32_t rings)
-        : size_(set.scene.size), page_(set.scene.pageSize()), ring_(size_t{size_} * size_, kEmpty),
-          place_(ring_.size(), 0) {
+        : sources_(set), size_(set.scene.size), page_(set.scene.pageSize()),
+          ring_(size_t{size_} * size_, kEmpty), place_(ring_.size(), 0) {
         ASSERT(rings < kEmpty);
         plan_.rings = rings;
         plan_.chunkCount = set.chunkCount();
@@ -85,8 +86,11 @@ private:
         std::vector<uint32_t> chunks;
         uint32_t mask = 0;
         forNeighbours(texel, [&](uint32_t n, uint32_t from) {
-            if (ring_[from] >= ring) return;
-            mask |= 1u << n;
+            if (ring_[from] < ring) mask |= 1u << n;
+        });
+        if (ring == 1) mask = sources_.choose(texel, mask);
+        forNeighbours(texel, [&](uint32_t n, uint32_t from) {
+            if ((mask >> n & 1u) == 0) return;
             if (ring_[from] == 0)
                 chunks.push_back(place_[from]);
             else {
@@ -107,6 +111,7 @@ private:
         return std::span(chunkLists_).subspan(size_t{at} + 1, chunkLists_[at]);
     }
 
+    const SeamSources sources_;
     const uint32_t size_, page_;
     SeamPlan plan_;
     std::vector<uint8_t> ring_;        // per texel: 0 shows a patch, kEmpty nothing

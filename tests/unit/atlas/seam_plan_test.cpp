@@ -32,11 +32,15 @@ PatchSet randomPatches(uint32_t size, double share, uint32_t seed) {
                 (y * size + x) << shader::kTexelShift | (uniform(random) < 0.9 ? shader::kPatchSends : 0u);
             set.scene.texelToPatch[y * size + x] = static_cast<uint32_t>(set.scene.patches.size());
             set.scene.patches.push_back(patch);
+            set.scene.patchChart.push_back(static_cast<uint32_t>(uniform(random) * 4));
+            set.coverCells.push_back(random() & random() & random() & shader::kCoverCells);
         }
     }
     set.count = static_cast<uint32_t>(set.scene.patches.size());
     while (set.scene.patches.size() % shader::kChunk != 0)
         set.scene.patches.emplace_back();
+    set.scene.patchChart.resize(set.scene.patches.size(), shader::kNoPatch);
+    set.coverCells.resize(set.scene.patches.size(), 0);
     return set;
 }
 
@@ -110,6 +114,56 @@ TEST(SeamPlan, FillsWhatMakeLightmapFills) {
             }
         }
     }
+}
+
+// A row of texels: two of a chart, a gap, and one of another chart, of which `cells` are covered.
+PatchSet twoCharts(uint32_t cells) {
+    constexpr uint32_t kSize = 8;
+    PatchSet set;
+    set.scene.size = kSize;
+    set.scene.texelToPatch.assign(size_t{kSize} * kSize, shader::kNoPatch);
+    for (const uint32_t x : {2u, 3u, 5u}) {
+        const uint32_t texel = 3 * kSize + x;
+        set.scene.texelToPatch[texel] = static_cast<uint32_t>(set.scene.patches.size());
+        shader::Patch patch{};
+        patch.flags = texel << shader::kTexelShift | shader::kPatchSends;
+        set.scene.patches.push_back(patch);
+        set.scene.patchChart.push_back(x == 5 ? 1 : 0);
+        set.coverCells.push_back(x == 5 ? cells : shader::kCoverCells);
+    }
+    set.count = 3;
+    set.scene.patches.resize(shader::kChunk);
+    set.scene.patchChart.resize(shader::kChunk, shader::kNoPatch);
+    set.coverCells.resize(shader::kChunk, 0);
+    return set;
+}
+
+float gapOf(const PatchSet& set) {
+    std::vector<glm::vec4> light(set.scene.patches.size(), glm::vec4(1.0f));
+    light[2] = glm::vec4(101.0f);
+    const FloatImage image = makeLightmap(set, light, {});
+    std::vector<Texel> texels(size_t{set.scene.size} * set.scene.size);
+    follow(set, buildSeamPlan(set, 4), {0}, light, texels);
+    expectSame(texels, image);
+    return image.planes[0][3 * set.scene.size + 4];
+}
+
+// Bilinear filters read no farther than a texel from where a chart ends.
+TEST(SeamPlan, ATexelBetweenTwoChartsIsOfThatForWhichFiltersReadIt) {
+    constexpr uint32_t kRightHalf = 0b11000'11000'11000'11000'11000, kLeftColumn = kRightHalf >> 3 & 0b1u;
+    EXPECT_EQ(gapOf(twoCharts(kRightHalf)), 1.0f) << "the narrow chart ends on its texel's middle";
+    EXPECT_EQ(gapOf(twoCharts(kLeftColumn)), 51.0f) << "both are read there";
+    EXPECT_EQ(gapOf(twoCharts(0)), 51.0f) << "nobody knows";
+    // Where the gap is a part of the first chart that lies inside something, it is filled from that chart.
+    PatchSet inside = twoCharts(kLeftColumn);
+    shader::Patch hidden{};
+    hidden.flags = (3 * inside.scene.size + 4) << shader::kTexelShift;
+    inside.scene.patches[3] = hidden;
+    inside.scene.patchChart[3] = 0;
+    inside.scene.texelToPatch[3 * inside.scene.size + 4] = 3;
+    EXPECT_EQ(gapOf(inside), 1.0f);
+    inside.scene.patchChart[3] = 1;
+    EXPECT_EQ(gapOf(inside), 101.0f);
 }
 
 // Pages lie side by side, but no page's empty texels are filled from another one.
