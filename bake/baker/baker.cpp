@@ -240,7 +240,11 @@ void Baker::findValidity(Carry* carry) {
         spdlog::info(
             "{} of {} patches lie inside something: {} of them step aside in their texels, the others "
             "send nothing and are filled from their neighbours",
-            inside_, patches_.count, patches_.aside.size());
+            inside_, patches_.count, asideFromInside(patches_));
+}
+
+uint32_t Baker::invalidPatches() const {
+    return inside_ - asideFromInside(patches_);
 }
 
 void Baker::makeVoxels() {
@@ -278,7 +282,7 @@ void Baker::makeCovers() {
     shareCells(ranks(), dealt, covered, patches_, device_.workers());
     vk::upload(device_, covers, patches_.covers.data(), patches_.covers.size() * sizeof(shader::PatchCover));
     searcher.release(); // memory is planned for one search at a time
-    tracer_->updateSenders(stepAside(searcher, ranks(), dealt));
+    tracer_->updateSenders(stepAside(searcher, ranks(), dealt, mover_ ? mover_->touching() : touching_));
     light_->covers = std::move(covers);
 }
 
@@ -309,6 +313,7 @@ void Baker::searchInside() {
                         .patches = patches_,
                         .chunks = {},
                         .met = mover_ ? &met : nullptr,
+                        .touching = &touching_,
                         .onBatch = [this](double done) { onPhase("validity", done); }};
     const ChunkDeal dealt = dealOf(patches_, ranks(), device_);
     const std::span<const ChunkRange> own = dealt.runsOf(ranks().rank());

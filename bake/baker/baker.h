@@ -92,7 +92,7 @@ public:
     LightBuffers& light() { return *light_; }
     const std::vector<PhaseTime>& phases() const { return phases_; }
     /// Returns how many patches lie inside something and have not stepped aside.
-    uint32_t invalidPatches() const { return inside_ - static_cast<uint32_t>(patches_.aside.size()); }
+    uint32_t invalidPatches() const;
     /// Returns the lightmap of the last finished pass. Where sumsLayers(), it is the sum of weight times
     /// layer (LayerSum), seams filled layer by layer: the solver's own light but for the last bits.
     FloatImage lightmap(LightmapDesc desc) const;
@@ -150,7 +150,8 @@ private:
     std::string tracerChoice_;
     std::vector<PhaseTime> phases_;
     bool whole_ = true;
-    uint32_t inside_ = 0; // patches whose texel's own point lies inside something
+    uint32_t inside_ = 0;            // patches whose texel's own point lies inside something
+    std::vector<uint32_t> touching_; // patches that may lie upon a surface (mayTouch), of this process
     MoveCounters moves_;
 };
 

@@ -68,6 +68,11 @@ void ObjectMover::noteInside(std::vector<MetBits> met, uint32_t patches) {
     insidePatches_ = patches;
 }
 
+std::vector<uint32_t> ObjectMover::touching() const {
+    return numbersWhere(on_.device.workers(), on_.patches.count,
+                        [&](size_t i) { return mayTouch(inside_[i]); });
+}
+
 // Returns the objects that have moved, or nothing where some of them were hidden from the beginning.
 std::optional<ObjectMover::Moved> ObjectMover::moved() const {
     Moved moved;
@@ -368,8 +373,8 @@ std::vector<uint32_t> ObjectMover::stepAside(Tracer& tracer, const std::vector<O
     for (const OwnPoint& point : before)
         if (!move.has(point.patch) && !isNear(point.patch, move)) known.push_back(point);
     MoveSearch& search = searchFor(tracer);
-    relume::stepAside(search.covers(), oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, {}), known,
-                      &search.places());
+    relume::stepAside(search.covers(), oneProcess(), ChunkDeal(on_.patches.chunkCount(), 1, {}), touching(),
+                      known, &search.places());
     OtherPoints others = otherPoints(before, pointsAside(on_.patches));
     for (const uint32_t patch : others.points)
         move.change(patch);

@@ -60,6 +60,8 @@ public:
     bool repaint(const LightmapAtlas& atlas, std::span<const uint32_t> instances);
     /// Tells whether albedo or emission patterns of patches have changed in the last move.
     bool repainted() const { return repainted_; }
+    /// Returns the patches that may lie upon a surface (mayTouch), ascending.
+    std::vector<uint32_t> touching() const;
     /// Returns how many patches lie inside something, those that step aside, too.
     uint32_t insidePatches() const { return insidePatches_; }
 

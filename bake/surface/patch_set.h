@@ -18,6 +18,7 @@ struct OwnPoint {
     uint32_t patch;
     glm::vec3 position;    // [m]
     uint32_t place, cells; // PatchCover's: where in the texel it lies, what it sees of that
+    bool sends = false;    // from there
     bool operator==(const OwnPoint&) const = default;
 };
 
@@ -33,8 +34,8 @@ struct PatchSet {
     // are taken away later (bake/validity/cover_search.h); coverCells has them as the surface has them.
     std::vector<shader::PatchCover> covers;
     std::vector<uint32_t> coverCells;
-    // These are the points that patches had before they stepped aside, as they lay inside something
-    // (bake/validity/step_aside.h); ascending by patch.
+    // These are the points that patches had before they stepped aside, as they lay inside something or upon a
+    // surface (bake/validity/step_aside.h); ascending by patch.
     std::vector<OwnPoint> aside;
     std::vector<float> reach; // per chunk: how far samples may start from their patch's own point [m]
     std::vector<shader::ChunkBounds> bounds;               // per chunk

@@ -166,6 +166,11 @@ public:
         const std::vector<uint32_t> found = patchesWhere(
             [&](uint32_t patch) { return isPatch(patch) && insideBy(metBy(patch)) == Inside::Yes; });
         inside.insert(inside.end(), found.begin(), found.end());
+        if (search_.touching) {
+            const std::vector<uint32_t> touching =
+                patchesWhere([&](uint32_t patch) { return isPatch(patch) && mayTouch(metBy(patch)); });
+            search_.touching->insert(search_.touching->end(), touching.begin(), touching.end());
+        }
         if (search_.met) std::copy(met_.begin(), met_.end(), search_.met->begin() + first * kChunk);
     }
 
@@ -285,7 +290,7 @@ PlaceSearcher::PlaceSearcher(const vk::Device& device, Tracer& tracer) : device_
 
 PlaceSearcher::~PlaceSearcher() = default;
 
-std::vector<uint8_t> PlaceSearcher::lieInside(std::span<const shader::Patch> places,
+std::vector<PlaceKind> PlaceSearcher::kindsOf(std::span<const shader::Patch> places,
                                               const std::function<void(double done)>& onBatch) {
     std::vector<MetBits> met(places.size());
     std::vector<uint32_t> open(places.size());
@@ -307,10 +312,12 @@ std::vector<uint8_t> PlaceSearcher::lieInside(std::span<const shader::Patch> pla
         }
         std::erase_if(open, [&](uint32_t place) { return insideBy(met[place]) != Inside::Unknown; });
     }
-    std::vector<uint8_t> inside;
+    std::vector<PlaceKind> kinds;
     for (const MetBits& bits : met)
-        inside.push_back(insideBy(bits) == Inside::Yes);
-    return inside;
+        kinds.push_back(insideBy(bits) == Inside::Yes ? PlaceKind::Inside
+                        : mayTouch(bits)              ? PlaceKind::Touching
+                                                      : PlaceKind::Outside);
+    return kinds;
 }
 
 uint64_t placeSearchBytes(uint32_t chunks, bool software) {

@@ -19,7 +19,8 @@ struct InsideSearch {
     const PatchSet& patches;
     std::vector<ChunkRange> chunks;      // that are asked, ascending
     std::vector<MetBits>* met = nullptr; // per patch, padding included: gets what was followed, where given
-    std::function<void(double done)> onBatch; // before each batch; what it throws ends the search
+    std::vector<uint32_t>* touching = nullptr; // gets the patches of mayTouch(), ascending, where given
+    std::function<void(double done)> onBatch;  // before each batch; what it throws ends the search
 };
 
 /// Returns the patches of these chunks that lie inside something (insideBy), ascending. It works in short
@@ -29,16 +30,18 @@ std::vector<uint32_t> findInside(const InsideSearch& search);
 /// Returns the device bytes that it takes, on a software device or a GPU.
 uint64_t insideBytes(uint32_t chunks, bool software);
 
+/// Where a place lies; Touching: outside, but mayTouch().
+enum class PlaceKind : uint8_t { Outside, Touching, Inside };
+
 /// Finds out which places lie inside something. It keeps its buffers from one search to the next.
 class PlaceSearcher {
 public:
     PlaceSearcher(const vk::Device& device, Tracer& tracer);
     ~PlaceSearcher();
 
-    /// Returns a 1 for each of these places that lies inside something. They stand in for patches, whose
-    /// directions they follow, no more than it takes. onBatch is called before each batch, where there is
-    /// one.
-    std::vector<uint8_t> lieInside(std::span<const shader::Patch> places,
+    /// Returns where each of these places lies. They stand in for patches, whose directions they follow, no
+    /// more than it takes. onBatch is called before each batch, where there is one.
+    std::vector<PlaceKind> kindsOf(std::span<const shader::Patch> places,
                                    const std::function<void(double done)>& onBatch = {});
 
 private:

@@ -32,4 +32,9 @@ Inside insideBy(const MetBits& met) {
     return meetsEnough(count(backs), count(sky)) ? Inside::Yes : Inside::Unknown;
 }
 
+bool mayTouch(const MetBits& met) {
+    const uint32_t unknown = met.backs & met.sky;
+    return (unknown & kFirst) == 0 && std::popcount(met.backs & kFirst) >= 2 && insideBy(met) == Inside::No;
+}
+
 } // namespace relume

@@ -25,4 +25,9 @@ enum class Inside { No, Yes, Unknown };
 /// alone. Unknown: that depends on directions that nobody has followed.
 Inside insideBy(const MetBits& met);
 
+/// Tells whether a patch that does not lie inside something may lie upon a surface that stands on its own,
+/// exactly, as walls do on the middles of texels where all sizes are round: half of its directions begin
+/// inside that. At least two of its first directions meet backs then.
+bool mayTouch(const MetBits& met);
+
 } // namespace relume

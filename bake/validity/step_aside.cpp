@@ -69,18 +69,57 @@ void seekCells(const CoverSearch& search, PlaceSearcher& searcher, std::vector<S
                 places.back().position +=
                     shader::coverWay(patches.covers[seeker.patch], shader::cellPlace(seeker.cells.cells[k]));
             }
-        const std::vector<uint8_t> inside = searcher.lieInside(places, search.onBatch);
+        const std::vector<PlaceKind> kinds = searcher.kindsOf(places, search.onBatch);
         std::vector<Seeker> left;
         size_t place = 0;
         for (const Seeker& seeker : seekers) {
             const uint32_t end = std::min(first + atOnce, seeker.cells.count);
             bool found = false;
             for (uint32_t k = first; k < end; ++k)
-                if (inside[place++] == 0 && !std::exchange(found, true))
+                if (kinds[place++] != PlaceKind::Inside && !std::exchange(found, true))
                     cells[seeker.patch] = static_cast<uint8_t>(seeker.cells.cells[k]);
             if (!found && end < seeker.cells.count) left.push_back(seeker);
         }
         seekers = std::move(left);
+    }
+}
+
+// Writes the cell that each of these patches steps to that lie upon a surface.
+void leaveSurfaces(const CoverSearch& search, PlaceSearcher& searcher, std::span<const uint32_t> touching,
+                   std::vector<uint8_t>& cells) {
+    constexpr size_t kAtOnce = size_t{1} << 16; // for their places take four times a patch's memory
+    if (touching.size() > kAtOnce) {
+        leaveSurfaces(search, searcher, touching.first(kAtOnce), cells);
+        return leaveSurfaces(search, searcher, touching.subspan(kAtOnce), cells);
+    }
+    const PatchSet& patches = search.patches;
+    struct Side {
+        uint32_t patch, cell;
+        bool seen;
+    };
+    std::vector<Side> sides;
+    std::vector<shader::Patch> places;
+    for (const uint32_t patch : touching)
+        for (const uint32_t cell : kSideCells) {
+            if ((patches.coverCells[patch] >> cell & 1u) == 0) continue;
+            sides.push_back({patch, cell, (patches.covers[patch].cells >> cell & 1u) != 0});
+            places.push_back(patches.scene.patches[patch]);
+            places.back().position += shader::coverWay(patches.covers[patch], shader::cellPlace(cell));
+        }
+    if (places.empty()) return;
+    const std::vector<PlaceKind> kinds = searcher.kindsOf(places, search.onBatch);
+    for (size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+        uint32_t outside = kStays; // a cell that lies wholly so
+        bool hidden = false, seesInside = false, seesOutside = false;
+        for (; end < sides.size() && sides[end].patch == sides[begin].patch; ++end) {
+            const bool inside = kinds[end] == PlaceKind::Inside, clear = kinds[end] == PlaceKind::Outside;
+            hidden = hidden || inside;
+            seesInside = seesInside || (inside && sides[end].seen);
+            seesOutside = seesOutside || (clear && sides[end].seen);
+            if (clear && outside == kStays) outside = sides[end].cell;
+        }
+        // Where a point sees what lies outside and nothing else, it lies there itself.
+        if (hidden && (seesInside || !seesOutside)) cells[sides[begin].patch] = static_cast<uint8_t>(outside);
     }
 }
 
@@ -92,7 +131,8 @@ uint32_t placeOf(uint32_t cell) {
 
 OwnPoint pointOf(const PatchSet& patches, uint32_t patch) {
     const shader::PatchCover& cover = patches.covers[patch];
-    return {patch, patches.scene.patches[patch].position, cover.place, cover.cells};
+    const shader::Patch& own = patches.scene.patches[patch];
+    return {patch, own.position, cover.place, cover.cells, (own.flags & shader::kPatchSends) != 0};
 }
 
 void setPoint(PatchSet& patches, const OwnPoint& point) {
@@ -135,7 +175,8 @@ CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells) {
 }
 
 std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const ChunkDeal& dealt,
-                                std::span<const OwnPoint> known, PlaceSearcher* places) {
+                                std::span<const uint32_t> touching, std::span<const OwnPoint> known,
+                                PlaceSearcher* places) {
     const CoverSearch& search = covers.on();
     PatchSet& patches = search.patches;
     ASSERT(patches.aside.empty());
@@ -143,7 +184,9 @@ std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const Chunk
     std::vector<uint8_t> cells(patches.scene.patches.size(), kStays);
     {
         PlaceSearcher once(search.device, search.tracer);
-        seekCells(search, places ? *places : once, seekersIn(search, own), cells);
+        PlaceSearcher& searcher = places ? *places : once;
+        seekCells(search, searcher, seekersIn(search, own), cells);
+        leaveSurfaces(search, searcher, patchesIn(own, touching), cells);
     }
     shareChunks(ranks, dealt, cells);
     std::vector<uint32_t> aside, looking;
@@ -177,7 +220,7 @@ std::vector<OwnPoint> stepBack(PatchSet& patches) {
     std::vector<OwnPoint> aside = pointsAside(patches);
     for (const OwnPoint& home : std::exchange(patches.aside, {})) {
         setPoint(patches, home);
-        patches.scene.patches[home.patch].flags &= ~shader::kPatchSends;
+        if (!home.sends) patches.scene.patches[home.patch].flags &= ~shader::kPatchSends;
     }
     return aside;
 }
@@ -200,6 +243,11 @@ std::vector<OwnPoint> carryAside(std::span<const OwnPoint> former, std::span<con
     std::sort(aside.begin(), aside.end(),
               [](const OwnPoint& a, const OwnPoint& b) { return a.patch < b.patch; });
     return aside;
+}
+
+uint32_t asideFromInside(const PatchSet& patches) {
+    return static_cast<uint32_t>(std::count_if(patches.aside.begin(), patches.aside.end(),
+                                               [](const OwnPoint& home) { return !home.sends; }));
 }
 
 std::vector<OwnPoint> pointsAside(const PatchSet& patches) {

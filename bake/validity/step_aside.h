@@ -20,18 +20,24 @@ struct CellsToTry {
 /// farthest from that. Others are beside these, and hardly ever lie outside where both lie inside.
 CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells);
 
+/// The cells on two sides of the middle, twice, by which a patch upon a surface is told.
+constexpr std::array<uint32_t, 4> kSideCells = {10, 14, 2, 22};
+
 /// Lets patches that lie inside something step aside, where part of their texel lies outside: their own point
 /// becomes the middle of a cell that it did not see and that lies outside (cellsToTry), and they send from
-/// now on. Covers are those that have been searched, and no patch has stepped aside yet. Patches that
-/// have are in PatchSet::aside, their covers are as their new point sees them, and the device's patches and
-/// covers follow; senders of a tracer are the caller's. Each rank seeks for its own chunks. What patches saw
-/// before from known points (ascending by patch) they see from there again. `places` tells which cells lie
-/// inside something; where it is missing, its buffers are given up before the covers are searched. Returns
-/// those that have stepped aside, ascending.
+/// now on. So do those of `touching` (mayTouch(), ascending) that have cells inside something and others
+/// outside (kSideCells), and see those inside or none of the others: their point lies upon the surface
+/// between them, and becomes the middle of one of the others. Covers are those that have been searched, and
+/// no patch has stepped aside yet. Patches that have are in PatchSet::aside, their covers are as their new
+/// point sees them, and the device's patches and covers follow; senders of a tracer are the caller's. Each
+/// rank seeks for its own chunks. What patches saw before from known points (ascending by patch) they see
+/// from there again. `places` tells which cells lie inside something; where it is missing, its buffers are
+/// given up before the covers are searched. Returns those that have stepped aside, ascending.
 std::vector<uint32_t> stepAside(CoverSearcher& covers, Ranks& ranks, const ChunkDeal& dealt,
-                                std::span<const OwnPoint> known = {}, PlaceSearcher* places = nullptr);
+                                std::span<const uint32_t> touching, std::span<const OwnPoint> known = {},
+                                PlaceSearcher* places = nullptr);
 
-/// Takes all patches back to their own points, where they lie inside something and send nothing. Returns
+/// Takes all patches back to their own points; where they lie inside something, they send nothing. Returns
 /// where they had stepped aside to, ascending by patch.
 std::vector<OwnPoint> stepBack(PatchSet& patches);
 
@@ -41,6 +47,9 @@ std::vector<OwnPoint> stepBack(const CoverSearch& search);
 /// Returns where patches of a former bake had stepped aside to, as patches of another one: now[patch] is its
 /// number there, or kNoPatch.
 std::vector<OwnPoint> carryAside(std::span<const OwnPoint> former, std::span<const uint32_t> now);
+
+/// Returns how many of those that have stepped aside lie inside something at home.
+uint32_t asideFromInside(const PatchSet& patches);
 
 /// Returns where patches have stepped aside to, ascending by patch.
 std::vector<OwnPoint> pointsAside(const PatchSet& patches);

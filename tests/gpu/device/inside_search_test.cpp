@@ -16,13 +16,13 @@
 namespace relume {
 namespace {
 
-/// Makes a floor of texels of 0.1 m, in a room or below the sky, on which a box stands that covers part of
-/// it. It is shifted by so many metres against the texels' edges.
-Scene coveredFloor(bool closed, float shift = 0) {
+/// Makes a floor of 4 m, of 40 texels if nothing else is said, in a room or below the sky, on which a box
+/// stands that covers part of it. It is shifted by so many metres against the texels' edges.
+Scene coveredFloor(bool closed, float shift = 0, int texels = 40) {
     SceneMaker maker(128);
     const int grey = maker.material(0.5f, 1.0f);
     if (closed) maker.box({-2, -2, -2}, {glm::vec3(8, 0, 0), {0, 8, 0}, {0, 0, 8}}, grey, 20);
-    maker.quad({-1, 0, -1}, {0, 0, 4}, {4, 0, 0}, grey, {40, 40});
+    maker.quad({-1, 0, -1}, {0, 0, 4}, {4, 0, 0}, grey, {texels, texels});
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1), o(shift, -0.5f, shift);
     for (const auto& [corner, u, v] :
          {std::tuple(o, z, y), {o, x, z}, {o, y, x}, {o + x, y, z}, {o + y, z, x}, {o + z, x, y}})
@@ -75,7 +75,7 @@ TEST(InsideSearch, AsManyDirectionsAsItTakesFindWhatAllFind) {
             }
             EXPECT_GT(inside.size(), 20u);
             EXPECT_EQ(hiddenPatches(patches), inside);
-            EXPECT_EQ(baker->invalidPatches() + baker->patches().aside.size(), inside.size());
+            EXPECT_EQ(baker->invalidPatches() + asideFromInside(baker->patches()), inside.size());
         }
 }
 
@@ -104,6 +104,31 @@ TEST(InsideSearch, PatchesBesideTheBoxStepAside) {
             }
             if (first.empty()) first = aside;
             EXPECT_EQ(aside, first) << int(kind);
+        }
+    }
+}
+
+// Where sizes are round, walls stand exactly on the middles of texels: the floor goes on below them, half of
+// what such a texel looks at is the wall's inside, and no ray along the floor meets the wall from there. It
+// would have half the light.
+TEST(InsideSearch, PatchesUponASurfaceLeaveIt) {
+    constexpr float kShift = 0.0625f, kClear = 1e-3f; // [m]; the first is half a texel
+    for (const TracerKind kind : tracersOfTestDevice()) {
+        BakeDesc desc{.size = 128, .method = Method::Hybrid, .samples = 16};
+        desc.tracer = kind;
+        const auto baker = makeBaker(coveredFloor(true, kShift, 32), desc);
+        const PatchSet& patches = baker->patches();
+        EXPECT_GT(std::count_if(patches.aside.begin(), patches.aside.end(),
+                                [](const OwnPoint& home) { return home.sends; }),
+                  10);
+        for (uint32_t i = 0; i < patches.count; ++i) {
+            const shader::Patch& patch = patches.scene.patches[i];
+            if ((patch.flags & shader::kPatchSends) == 0 || std::abs(patch.position.y) > kClear) continue;
+            const glm::vec3 local = patch.position - glm::vec3(kShift, 0, kShift);
+            const auto among = [](float x) { return x > 0.1f && x < 0.9f; }; // off the edges of the box
+            const auto clear = [](float x) { return x < -kClear || x > 1 + kClear; };
+            EXPECT_TRUE(!among(local.z) || clear(local.x)) << local.x << " " << local.z;
+            EXPECT_TRUE(!among(local.x) || clear(local.z)) << local.x << " " << local.z;
         }
     }
 }

@@ -49,6 +49,15 @@ TEST(MetBits, TwoInFiveBacksAndMoreBacksThanFrontsAreInside) {
     EXPECT_EQ(insideBy(metInOrder(1, 0, 22)), Inside::No) << "whatever the others meet";
 }
 
+TEST(MetBits, TwoOfTheFirstDirectionsTellWhatMayTouchASurface) {
+    EXPECT_TRUE(mayTouch(metInOrder(16, 0))) << "a half of them begins inside";
+    EXPECT_TRUE(mayTouch(metInOrder(2, 0)));
+    EXPECT_FALSE(mayTouch(metInOrder(1, 0)));
+    EXPECT_FALSE(mayTouch(metInOrder(17, 0))) << "it lies inside";
+    EXPECT_FALSE(mayTouch(metInOrder(2, 0, kFirstDirections - 1))) << "nobody knows yet";
+    EXPECT_FALSE(mayTouch(MetBits{}));
+}
+
 // A search stops where more directions could not change what is told.
 TEST(MetBits, WhatIsToldStaysToldWhateverElseIsFollowed) {
     std::mt19937 random(1);

@@ -57,7 +57,7 @@ TEST(StepAside, BackIsWhereItWas) {
     patches.scene.patches.resize(2);
     patches.covers = {squareCover(), squareCover()};
     const OwnPoint home{.patch = 1, .position = {0, 5, 0}, .place = 7, .cells = 3};
-    const OwnPoint aside{.patch = 1, .position = {1, 5, 0}, .place = 8, .cells = 4};
+    const OwnPoint aside{.patch = 1, .position = {1, 5, 0}, .place = 8, .cells = 4, .sends = true};
     patches.aside = {home};
     patches.scene.patches[1].position = aside.position;
     patches.scene.patches[1].flags = shader::kPatchSends;
@@ -70,6 +70,21 @@ TEST(StepAside, BackIsWhereItWas) {
     EXPECT_EQ(patches.covers[1].place, home.place);
     EXPECT_EQ(patches.covers[1].cells, home.cells);
     EXPECT_TRUE(stepBack(patches).empty());
+}
+
+// What lay upon a surface sends from home, too, and is not counted among what lies inside something.
+TEST(StepAside, WhatSentBeforeSendsAgain) {
+    PatchSet patches;
+    patches.scene.patches.resize(2);
+    patches.covers = {squareCover(), squareCover()};
+    patches.aside = {{.patch = 0, .position = {}, .place = 7, .cells = 3, .sends = true},
+                     {.patch = 1, .position = {}, .place = 7, .cells = 3}};
+    for (shader::Patch& patch : patches.scene.patches)
+        patch.flags = shader::kPatchSends;
+    EXPECT_EQ(asideFromInside(patches), 1u);
+    stepBack(patches);
+    EXPECT_NE(patches.scene.patches[0].flags & shader::kPatchSends, 0u);
+    EXPECT_EQ(patches.scene.patches[1].flags & shader::kPatchSends, 0u);
 }
 
 } // namespace relume
