@@ -105,6 +105,7 @@ private:
     };
     void findSeams();
     std::vector<Candidate> candidates();
+    bool isCrease(uint32_t halfEdge) const;
     bool isSmooth(uint32_t halfEdge) const;
     std::optional<Candidate> candidateOf(size_t first, size_t last) const;
     std::vector<Candidate> choose(const std::vector<Candidate>& all) const;
@@ -170,28 +171,34 @@ bool Joiner::isRefused(uint32_t a, uint32_t b) const {
            found->versionB == version_[b];
 }
 
+bool Joiner::isCrease(uint32_t h) const {
+    return glm::dot(mesh_.normal[h / 3], mesh_.normal[mesh_.opposite[h] / 3]) <= kHardCosine;
+}
+
 /// Tells whether wide charts may be joined across an edge. What came to a chart as a narrow one leads
 /// nowhere: else a thin wall would have its two sides, one in the sun and one in the dark, in texels side by
 /// side.
 bool Joiner::isSmooth(uint32_t h) const {
-    const uint32_t left = h / 3, right = mesh_.opposite[h] / 3;
-    return glm::dot(mesh_.normal[left], mesh_.normal[right]) > kHardCosine && !edging_[left] &&
-           !edging_[right];
+    return !isCrease(h) && !edging_[h / 3] && !edging_[mesh_.opposite[h] / 3];
 }
 
 std::optional<Candidate> Joiner::candidateOf(size_t first, size_t last) const {
     const uint32_t a = seams_[first].a, b = seams_[first].b;
     if (isRefused(a, b)) return std::nullopt;
-    double length = 0.0, smooth = 0.0;
+    double length = 0.0, smooth = 0.0, crease = 0.0;
     for (size_t i = first; i < last; ++i) {
         const uint32_t h = seams_[i].halfEdge;
         const double one = lengthOf(h);
         length += one;
         if (isSmooth(h)) smooth += one;
+        if (isCrease(h)) crease += one;
     }
     const FlatChart &left = set_.charts[a], &right = set_.charts[b];
-    const bool narrow = std::min(left.width(), right.width()) < kNarrow * texel_;
+    const auto isNarrow = [&](const FlatChart& chart) { return chart.width() < kNarrow * texel_; };
+    const bool narrow = isNarrow(left) || isNarrow(right);
     if (!narrow && smooth < 0.5 * length) return std::nullopt;
+    // Light may be another one across it: a wide chart's last texels would have that of the narrow one.
+    if (crease > 0.5 * length && !(isNarrow(left) && isNarrow(right))) return std::nullopt;
     const double score = length / std::min(left.border, right.border);
     if (!(score > kLeastShared)) return std::nullopt;
     return Candidate{a, b, first, last, score, narrow};

@@ -128,13 +128,17 @@ TEST(Charts, TheSidesOfAThinWallAreApart) {
             corners.insert(corners.end(), {a, b, c, a, c, d});
         }
         const std::vector<PlanarChart> charts = cut(corners, 0.25); // its edges are less than a texel wide
-        EXPECT_EQ(charts.size(), 2u) << steps;
+        // An edge that is flat has a chart of its own: light does not pass its creases.
+        EXPECT_EQ(charts.size(), steps == 1 ? 4u : 2u) << steps;
         EXPECT_NEAR(expectSound(corners, charts), 1.0, 1e-9);
         for (const PlanarChart& chart : charts) {
-            int sides = 0; // triangles of the two large sides in this chart
+            size_t sides = 0; // triangles of the two large sides in this chart
             for (uint32_t t : chart.triangles)
                 sides += glm::distance(outline[t / 2], outline[(t / 2 + 1) % outline.size()]) > 3.0;
-            EXPECT_EQ(sides, 2) << steps;
+            if (steps == 1)
+                EXPECT_TRUE(sides == 0 || sides == chart.triangles.size()) << sides;
+            else
+                EXPECT_EQ(sides, 2u) << steps;
         }
     }
 }
