@@ -78,6 +78,26 @@ void copyElements(const Span& source, const tinygltf::Accessor& accessor, uint32
                                                 accessor.componentType, accessor.normalized);
 }
 
+/// Calls place(target, value) for each element that the accessor's sparse part replaces, if it has one: its
+/// index, and the bytes of its new value.
+template<typename Place>
+void eachSparse(const tinygltf::Model& model, const tinygltf::Accessor& accessor, size_t elementBytes,
+                Place place) {
+    const auto& sparse = accessor.sparse;
+    if (!sparse.isSparse) return;
+    const uint32_t indexBytes = bytesOf(sparse.indices.componentType);
+    const Span indices = viewSpan(model, sparse.indices.bufferView,
+                                  static_cast<size_t>(sparse.indices.byteOffset), indexBytes);
+    const Span values = viewSpan(model, sparse.values.bufferView,
+                                 static_cast<size_t>(sparse.values.byteOffset), elementBytes);
+    for (size_t i = 0; i < static_cast<size_t>(sparse.count); ++i) {
+        // The views of sparse parts must be tightly packed, whatever stride they state.
+        const uint32_t target = index(indices.data + i * indexBytes, sparse.indices.componentType);
+        if (target >= accessor.count) throw Error("a sparse accessor's index lies past its end");
+        place(target, values.data + i * elementBytes);
+    }
+}
+
 } // namespace
 
 std::vector<float> readFloats(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
@@ -88,30 +108,25 @@ std::vector<float> readFloats(const tinygltf::Model& model, const tinygltf::Acce
     if (accessor.bufferView >= 0)
         copyElements(viewSpan(model, accessor.bufferView, accessor.byteOffset, elementBytes), accessor,
                      components, out.data());
-    if (!accessor.sparse.isSparse) return out;
-    const auto& sparse = accessor.sparse;
-    const uint32_t indexBytes = bytesOf(sparse.indices.componentType);
-    const Span indices = viewSpan(model, sparse.indices.bufferView,
-                                  static_cast<size_t>(sparse.indices.byteOffset), indexBytes);
-    const Span values = viewSpan(model, sparse.values.bufferView,
-                                 static_cast<size_t>(sparse.values.byteOffset), elementBytes);
-    for (size_t i = 0; i < static_cast<size_t>(sparse.count); ++i) {
-        // The views of sparse parts must be tightly packed, whatever stride they state.
-        const uint32_t target = index(indices.data + i * indexBytes, sparse.indices.componentType);
-        if (target >= accessor.count) throw Error("a sparse accessor's index lies past its end");
+    eachSparse(model, accessor, elementBytes, [&](uint32_t target, const unsigned char* value) {
         for (uint32_t c = 0; c < components; ++c)
-            out[target * components + c] = component(values.data + i * elementBytes + c * bytes,
-                                                     accessor.componentType, accessor.normalized);
-    }
+            out[target * components + c] =
+                component(value + c * bytes, accessor.componentType, accessor.normalized);
+    });
     return out;
 }
 
 std::vector<uint32_t> readIndices(const tinygltf::Model& model, const tinygltf::Accessor& accessor) {
     std::vector<uint32_t> out(accessor.count);
-    const Span source =
-        viewSpan(model, accessor.bufferView, accessor.byteOffset, bytesOf(accessor.componentType));
-    for (size_t i = 0; i < accessor.count; ++i)
-        out[i] = index(source.data + i * source.stride, accessor.componentType);
+    const uint32_t bytes = bytesOf(accessor.componentType);
+    if (accessor.bufferView >= 0) {
+        const Span source = viewSpan(model, accessor.bufferView, accessor.byteOffset, bytes);
+        for (size_t i = 0; i < accessor.count; ++i)
+            out[i] = index(source.data + i * source.stride, accessor.componentType);
+    }
+    eachSparse(model, accessor, bytes, [&](uint32_t target, const unsigned char* value) {
+        out[target] = index(value, accessor.componentType);
+    });
     return out;
 }
 

@@ -46,7 +46,8 @@ void parse(File file, Build& build);
 std::vector<float> readFloats(const tinygltf::Model& model, const tinygltf::Accessor& accessor,
                               uint32_t components);
 
-/// Reads a scalar accessor of unsigned integers.
+/// Reads a scalar accessor of unsigned integers, to which sparse parts are applied. Throws Error, without the
+/// file's name, where one of these names an element that there is not, as readFloats() does.
 std::vector<uint32_t> readIndices(const tinygltf::Model& model, const tinygltf::Accessor& accessor);
 
 /// Fills Scene::images, textures and materials. Images that nothing Relume knows uses are not even read; one

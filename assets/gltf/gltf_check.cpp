@@ -178,9 +178,10 @@ void Checker::primitive(const json& value, const std::string& where) const {
     checkDraco(*this, value, where);
     checkTargets(*this, value, where);
     const int64_t indices = index(value, "indices", where, "accessors");
-    if (indices >= 0 && !extensionOf(value, kDraco) &&
-        !member(root_["accessors"][static_cast<size_t>(indices)], "bufferView"))
-        fail(where + ".indices has no data");
+    if (indices >= 0 && !extensionOf(value, kDraco)) {
+        const json& used = root_["accessors"][static_cast<size_t>(indices)];
+        if (!member(used, "bufferView") && !member(used, "sparse")) fail(where + ".indices has no data");
+    }
     index(value, "material", where, "materials");
     integer(value, "mode", where, 4, 6);
 }

@@ -73,6 +73,28 @@ json takeLights(json& document, const char* name) {
     return lights.is_array() ? lights : json::array();
 }
 
+/// Lends accessors that have a sparse part alone the view of its indices: the parser refuses indices without
+/// a view. Returns which accessors these are; takeLentViews() takes the views back.
+std::vector<size_t> lendViews(json& document) {
+    std::vector<size_t> lent;
+    const auto accessors = document.find("accessors");
+    if (accessors == document.end()) return lent;
+    for (size_t i = 0; i < accessors->size(); ++i) {
+        json& accessor = (*accessors)[i];
+        const auto sparse = accessor.find("sparse");
+        if (sparse == accessor.end() || accessor.contains("bufferView")) continue;
+        const json view = (*sparse)["indices"]["bufferView"];
+        accessor["bufferView"] = view;
+        lent.push_back(i);
+    }
+    return lent;
+}
+
+void takeLentViews(tinygltf::Model& model, const std::vector<size_t>& lent) {
+    for (const size_t accessor : lent)
+        model.accessors[accessor].bufferView = -1;
+}
+
 /// Tells whether a path names a regular file, by its name alone; the parser's own function would wait for
 /// pipes.
 bool isFile(const std::string& path, void*) {
@@ -143,6 +165,7 @@ void parse(File file, Build& build) {
     file.json.erase("scene");
     hideDracoIndices(file.json);
     const std::vector<CompressedView> compressed = takeCompressedViews(file.json);
+    const std::vector<size_t> lent = lendViews(file.json);
     if (file.isShort || (file.binary && chunkBytesOf(file.json) > file.chunkBytes))
         warnPadded(build, "the binary chunk");
     BufferFiles files = bufferFilesOf(file);
@@ -172,6 +195,7 @@ void parse(File file, Build& build) {
                         file.path, firstLine(error)));
     for (const std::string& path : files.padded)
         warnPadded(build, "file " + inQuotes(path));
+    takeLentViews(build.model, lent);
     decodeViews(build, compressed);
 }
 

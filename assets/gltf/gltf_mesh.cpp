@@ -129,7 +129,11 @@ void PrimitiveBuilder::readIndices(Primitive& primitive) const {
             (type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE &&
              type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT && type != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
             fail("has indices that are no unsigned integers");
-        order = gltf::readIndices(build_.model, accessor);
+        try {
+            order = gltf::readIndices(build_.model, accessor);
+        } catch (const Error& error) {
+            fail(fmt::format("indices: {}", error.what()));
+        }
         for (uint32_t index : order)
             if (index >= vertices) fail(fmt::format("has index {}, but {} vertices", index, vertices));
     } else {

@@ -127,6 +127,16 @@ TEST(GltfBadInput, IndicesOutOfRange) {
             {"indices", {{"bufferView", b.view<uint16_t>({4, 0})}, {"componentType", 5123}}},
             {"values", {{"bufferView", b.view<float>({7, 8, 9})}}}};
     });
+    expectSpoiled("sparse_index", "indices: a sparse accessor's index", [](GlbBuilder& b) {
+        b.json["accessors"][b.json["meshes"][0]["primitives"][0]["indices"].get<size_t>()]["sparse"] = {
+            {"count", 1},
+            {"indices", {{"bufferView", b.view<uint16_t>({6, 0})}, {"componentType", 5123}}},
+            {"values", {{"bufferView", b.view<uint16_t>({0, 0})}}}};
+    });
+    expectSpoiled("no_indices", "indices has no data", [](GlbBuilder& b) {
+        b.json["accessors"][b.json["meshes"][0]["primitives"][0]["indices"].get<size_t>()].erase(
+            "bufferView");
+    });
     expectSpoiled("mesh", "nodes[0].mesh is 9, but there are 1 meshes",
                   [](GlbBuilder& b) { b.json["nodes"][0]["mesh"] = 9; });
     expectSpoiled("attribute", "POSITION is 99",

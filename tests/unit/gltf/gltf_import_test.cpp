@@ -162,6 +162,36 @@ TEST(GltfImport, SparseAccessorsOverTheirBaseAndOverZeros) {
     expectNearVector(scene.meshes[1].primitives[0].positions[2], {0, 0, 0});
 }
 
+TEST(GltfImport, SparseIndicesOverTheirBaseAndOverZeros) {
+    GlbBuilder b;
+    json square = b.square(), zeros = square;
+    // The base has the first triangle twice; the sparse part makes the square's other one of the second.
+    const int base = b.accessor<uint16_t>({0, 1, 2, 0, 1, 2}, "SCALAR");
+    b.json["accessors"][static_cast<size_t>(base)]["sparse"] = {
+        {"count", 2},
+        {"indices", {{"bufferView", b.view<uint8_t>({4, 5})}, {"componentType", 5121}}},
+        {"values", {{"bufferView", b.view<uint16_t>({2, 3})}}}};
+    square["indices"] = base;
+    b.json["accessors"].push_back(
+        {{"componentType", 5125},
+         {"count", 6},
+         {"type", "SCALAR"},
+         {"sparse",
+          {{"count", 4},
+           {"indices", {{"bufferView", b.view<uint32_t>({1, 2, 4, 5})}, {"componentType", 5125}}},
+           {"values", {{"bufferView", b.view<uint32_t>({1, 2, 2, 3})}}}}}});
+    zeros["indices"] = b.json["accessors"].size() - 1;
+    for (json* primitive : {&square, &zeros}) {
+        (*primitive)["attributes"]["NORMAL"] =
+            b.accessor<float>({0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+        b.node({{"mesh", b.mesh(*primitive)}});
+    }
+    const Scene scene = loadGltf(b.write("sparse_indices.glb"));
+    ASSERT_EQ(scene.meshes.size(), 2u);
+    for (const Mesh& mesh : scene.meshes)
+        EXPECT_EQ(mesh.primitives.at(0).indices, (std::vector<uint32_t>{0, 1, 2, 0, 2, 3}));
+}
+
 TEST(GltfImport, MissingNormalsAreFlatAndSplitVertices) {
     GlbBuilder b;
     // These are two triangles with a common edge, folded by a right angle.
