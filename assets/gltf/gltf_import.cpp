@@ -106,42 +106,66 @@ std::string sameName(const std::string& path, void*) {
     return path;
 }
 
-/// Holds the sizes that buffers have by the JSON, by the path of their file.
+/// Holds what the parser is to get of a file: glTF lets several buffers name one, each with a size of its
+/// own.
+struct BufferFile {
+    std::vector<uint64_t> sizes;      // that these buffers have by the JSON, in its order
+    size_t given = 0;                 // so many of them the parser has
+    std::vector<unsigned char> bytes; // the whole file, until its last buffer takes it
+};
+
+/// Holds the files of buffers by their paths.
 struct BufferFiles {
-    std::map<std::string, uint64_t> bytes;
+    std::map<std::string, BufferFile> files;
     std::vector<std::string> padded; // the files that were a little short
 };
 
 BufferFiles bufferFilesOf(const File& file) {
-    BufferFiles files;
+    BufferFiles found;
     const auto buffers = file.json.find("buffers");
-    if (buffers == file.json.end()) return files;
+    if (buffers == file.json.end()) return found;
     for (const json& buffer : *buffers)
         if (const auto uri = buffer.find("uri"); uri != buffer.end())
             if (const std::string path = pathOfUri(file, uri->get<std::string>()); !path.empty())
-                files.bytes[path] = buffer["byteLength"].get<uint64_t>();
-    return files;
+                found.files[path].sizes.push_back(buffer["byteLength"].get<uint64_t>());
+    return found;
 }
 
-/// Reads a file for the parser, which wants a buffer's to have exactly the size that the JSON tells. glTF
-/// allows more, and some exporters leave out the padding at the end.
+std::vector<unsigned char> bytesOfFile(const std::string& path) {
+    RegularFile file(path, "name a file");
+    std::vector<unsigned char> bytes(file.size());
+    file.read(bytes.data(), bytes.size());
+    return bytes;
+}
+
+/// Returns what the next buffer of the file that the parser reads gets of it.
+std::vector<unsigned char> nextBuffer(BufferFile& file, const std::string& path) {
+    if (file.given == 0) file.bytes = bytesOfFile(path);
+    const uint64_t size = file.sizes[file.given];
+    if (++file.given == file.sizes.size()) return std::move(file.bytes);
+    const uint64_t held = std::min<uint64_t>(size, file.bytes.size());
+    return {file.bytes.begin(), file.bytes.begin() + static_cast<std::ptrdiff_t>(held)};
+}
+
+/// Reads a buffer's bytes for the parser, which wants exactly as many as the JSON tells. glTF allows a longer
+/// file, and some exporters leave out the padding at the end. The parser reads buffers in their order.
 bool readAll(std::vector<unsigned char>* out, std::string* error, const std::string& path, void* user) {
     BufferFiles& files = *static_cast<BufferFiles*>(user);
+    const auto known = files.files.find(path);
     try {
-        RegularFile file(path, "name a file");
-        out->resize(file.size());
-        file.read(out->data(), out->size());
+        if (known == files.files.end() || known->second.given == known->second.sizes.size()) {
+            *out = bytesOfFile(path);
+            return true;
+        }
+        const uint64_t size = known->second.sizes[known->second.given];
+        *out = nextBuffer(known->second, path);
+        if (out->size() + kPadding < size) return true; // the parser tells of it
+        if (out->size() < size) files.padded.push_back(path);
+        out->resize(size);
     } catch (const Error& reason) {
         *error = reason.what();
         return false;
     }
-    const auto known = files.bytes.find(path);
-    if (known == files.bytes.end() || out->size() == known->second) return true;
-    if (out->size() < known->second) {
-        if (out->size() + kPadding < known->second) return true; // the parser tells of it
-        files.padded.push_back(path);
-    }
-    out->resize(known->second);
     return true;
 }
 

@@ -120,6 +120,32 @@ TEST(GltfChoice, AMissingTrailingByteIsPadding) {
     EXPECT_TRUE(loadGltf(test::writeText("claims.gltf", b.json.dump())).warnings.empty());
 }
 
+TEST(GltfChoice, BuffersOfOneFileHaveSizesOfTheirOwn) {
+    const Scene own = loadGltf(squareScene().write("own.glb"));
+    GlbBuilder b = squareScene();
+    b.bytes();
+    test::writeBytes("shared.bin", b.bin);
+    const size_t whole = b.bin.size(), positions = b.json["bufferViews"][0]["byteLength"].get<size_t>();
+    ASSERT_LT(positions, whole);
+    for (const auto& sizes : {std::vector{positions, whole, whole}, {whole, positions, positions + 1}}) {
+        b.json["buffers"] = json::array();
+        for (const size_t size : sizes)
+            b.json["buffers"].push_back({{"byteLength", size}, {"uri", "shared.bin"}});
+        const int shortest = sizes[0] == positions ? 0 : 1;
+        for (size_t i = 0; i < b.json["bufferViews"].size(); ++i)
+            b.json["bufferViews"][i]["buffer"] = i == 0 ? shortest : 1 - shortest;
+        const Scene scene = loadGltf(test::writeText("shared.gltf", b.json.dump()));
+        EXPECT_TRUE(scene.warnings.empty());
+        ASSERT_EQ(scene.instances.size(), 1u);
+        const Primitive& read = scene.meshes[0].primitives.at(0);
+        EXPECT_EQ(read.positions, own.meshes[0].primitives.at(0).positions);
+        EXPECT_EQ(read.texCoord1, own.meshes[0].primitives.at(0).texCoord1);
+    }
+    // A file that is too short for one of them is still refused.
+    b.json["buffers"][2]["byteLength"] = whole + 4;
+    EXPECT_NE(refusalOf(test::writeText("shared.gltf", b.json.dump()), {}), "");
+}
+
 TEST(GltfChoice, ARequiredExtensionThatNoMeshUsesIsAWarning) {
     GlbBuilder b = squareScene();
     b.json["extensionsUsed"] = b.json["extensionsRequired"] = {"ACME_fog", "KHR_draco_mesh_compression"};
