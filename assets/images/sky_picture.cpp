@@ -19,6 +19,8 @@ namespace {
 // This allows 11585 x 5793 pixels: 0.03 degrees a pixel, a seventeenth of the sun's disc, for 768 MiB of
 // pixels.
 constexpr uint64_t kMostSkyPixels = uint64_t(64) << 20;
+// Shaders get width and height in 16 bits each (LampPush::skySize).
+constexpr uint32_t kMostSkyEdge = 65535;
 
 bool isFloatFormat(const std::string& path) {
     std::string ending = std::filesystem::path(path).extension().string();
@@ -52,6 +54,9 @@ std::vector<std::string> readSkyPicture(Sky& sky) {
     if (!isFloatFormat(sky.file))
         throw Error(sky.file + ": a sky's picture must be an .exr or .hdr file: convert it");
     FloatImage image = readImage(sky.file, kMostSkyPixels);
+    if (std::max(image.width, image.height) > kMostSkyEdge)
+        throw Error(fmt::format("{}: has {} x {} pixels, more than {} along one side: scale it down",
+                                sky.file, image.width, image.height, kMostSkyEdge));
     sky.width = image.width;
     sky.height = image.height;
     sky.pixels.assign(size_t{image.width} * image.height, glm::vec3(0.0f));

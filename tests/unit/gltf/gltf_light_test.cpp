@@ -366,5 +366,23 @@ TEST(GltfSky, NamesThePictureItCannotUse) {
     EXPECT_EQ(errorOf("huge.hdr"), ": has 8192 x 8193 pixels, more than 64 Mpixel: scale it down");
 }
 
+TEST(GltfSky, APictureHasAtMost65535PixelsAlongASide) {
+    const auto write = [](const std::string& name, uint32_t width, uint32_t height) {
+        const std::vector<glm::vec3> pixels(size_t{width} * height, glm::vec3(1.0f));
+        writeImage(test::tempPath(name), picture(pixels, width));
+        LightFile file;
+        file.sky() = {{"file", name}};
+        return file;
+    };
+    EXPECT_EQ(write("wide.exr", 65535, 1).load().sky.width, 65535u);
+    EXPECT_EQ(write("high.exr", 1, 65535).load().sky.height, 65535u);
+    EXPECT_NE(write("wider.exr", 65536, 1)
+                  .error()
+                  .find("wider.exr: has 65536 x 1 pixels, more than 65535 along one side: scale it down"),
+              std::string::npos);
+    EXPECT_NE(write("higher.exr", 1, 65536).error().find("has 1 x 65536 pixels, more than 65535"),
+              std::string::npos);
+}
+
 } // namespace
 } // namespace relume
