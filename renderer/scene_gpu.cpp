@@ -1,6 +1,8 @@
 #include "renderer/scene_gpu.h"
 
 #include "assets/base/error.h"
+#include "assets/base/log.h"
+#include "assets/images/box_filter.h"
 #include "renderer/shader_types.h"
 
 #include <algorithm>
@@ -20,8 +22,13 @@ GLint wrapOf(Wrap wrap) {
                                           : GL_REPEAT;
 }
 
-gl::Texture makeTexture(const Scene& scene, const Texture& texture, bool srgb) {
-    const Image& image = scene.images[static_cast<size_t>(texture.image)];
+gl::Texture makeTexture(const Scene& scene, const Texture& texture, bool srgb, Warnings& warnings) {
+    const Image& source = scene.images[static_cast<size_t>(texture.image)];
+    const uint32_t most = gl::largestTexture();
+    const bool fits = std::max(source.width, source.height) <= most;
+    if (!fits) warnings.add(imageName(scene, texture.image), tooLarge(source.width, source.height, most));
+    const Image smaller = fits ? Image() : shrunkTo(most, source, srgb);
+    const Image& image = fits ? source : smaller;
     gl::Texture made({.width = image.width,
                       .height = image.height,
                       .format = static_cast<GLenum>(srgb ? GL_SRGB8_ALPHA8 : GL_RGBA8),
@@ -35,7 +42,16 @@ gl::Texture makeTexture(const Scene& scene, const Texture& texture, bool srgb) {
     return made;
 }
 
-gl::Texture makeSkyPicture(const Sky& sky) {
+gl::Texture makeSkyPicture(const Sky& whole, Warnings& warnings) {
+    const uint32_t most = gl::largestTexture();
+    const bool fits = std::max(whole.width, whole.height) <= most;
+    Sky smaller;
+    if (!fits) {
+        warnings.add("sky " + inQuotes(whole.file), tooLarge(whole.width, whole.height, most));
+        smaller = whole;
+        shrinkTo(most, smaller);
+    }
+    const Sky& sky = fits ? whole : smaller;
     // Values that half floats cannot hold would be infinite, which no tone mapping brings back.
     constexpr float kMostHalf = 65504.0f;
     std::vector<glm::vec3> pixels = sky.pixels;
@@ -72,6 +88,11 @@ std::vector<shader::SceneMaterial> describeAll(const Scene& scene) {
     return materials;
 }
 
+void logAll(const Warnings& warnings, const std::string& path) {
+    for (const std::string& warning : warnings.lines(path))
+        spdlog::warn("{}", warning);
+}
+
 } // namespace
 
 glm::mat4 placementBetween(const glm::mat4& from, const glm::mat4& to) {
@@ -80,12 +101,12 @@ glm::mat4 placementBetween(const glm::mat4& from, const glm::mat4& to) {
     return to * glm::inverse(from);
 }
 
-GLuint SceneGpu::textureOf(const Scene& scene, const TextureRef& use, bool srgb) {
+GLuint SceneGpu::textureOf(const Scene& scene, const TextureRef& use, bool srgb, Warnings& warnings) {
     if (use.texture < 0) return 0;
     const Texture& texture = scene.textures[static_cast<size_t>(use.texture)];
     if (texture.image < 0) return 0;
     gl::Texture& slot = loaded_[{use.texture, srgb}];
-    if (slot.get() == 0) slot = makeTexture(scene, texture, srgb);
+    if (slot.get() == 0) slot = makeTexture(scene, texture, srgb, warnings);
     return slot.get();
 }
 
@@ -111,10 +132,11 @@ SceneGpu::SceneGpu(const Scene& scene, const SceneGeometry& geometry)
                                     .attributes = attributes,
                                     .name = "scene"});
 
+    Warnings warnings;
     for (const Material& material : scene.materials)
-        textures_.push_back({textureOf(scene, material.baseColorTexture, true),
-                             textureOf(scene, material.emissionTexture, true),
-                             textureOf(scene, material.metallicRoughnessTexture, false),
+        textures_.push_back({textureOf(scene, material.baseColorTexture, true, warnings),
+                             textureOf(scene, material.emissionTexture, true, warnings),
+                             textureOf(scene, material.metallicRoughnessTexture, false, warnings),
                              material.alphaMode == AlphaMode::Mask});
     textures_.emplace_back();
     const std::vector<shader::SceneMaterial> materials = describeAll(scene);
@@ -128,7 +150,8 @@ SceneGpu::SceneGpu(const Scene& scene, const SceneGeometry& geometry)
         places_[i].hidden = made_[i].hidden;
     sky_ = scene.sky;
     skyFile_ = sky_.file;
-    if (!scene.sky.pixels.empty()) skyPicture_ = makeSkyPicture(scene.sky);
+    if (!scene.sky.pixels.empty()) skyPicture_ = makeSkyPicture(scene.sky, warnings);
+    logAll(warnings, scene.path);
     setAnisotropy(kAnisotropy);
 }
 
@@ -164,7 +187,9 @@ void SceneGpu::updateSky(const SkySettings& sky) {
 
 void SceneGpu::updateSkyPicture(const Sky& sky) {
     skyPicture_ = {}; // before the new one takes its memory
-    skyPicture_ = makeSkyPicture(sky);
+    Warnings warnings;
+    skyPicture_ = makeSkyPicture(sky, warnings);
+    logAll(warnings, "");
     skyFile_ = sky.file;
     version_ = newVersion();
 }

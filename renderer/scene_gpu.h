@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "assets/base/warnings.h"
 #include "assets/model/scene_edits.h"
 #include "renderer/gl/buffer.h"
 #include "renderer/gl/texture.h"
@@ -36,7 +37,9 @@ public:
     // Floors seen at a flat angle are blurred without it; more than 8 samples show no difference.
     static constexpr float kAnisotropy = 8.0f;
 
-    SceneGpu(const Scene& scene, const WorldMesh& mesh); // throws Error when it does not fit
+    /// Images that are too large for the driver are made smaller, with a warning. Throws Error where there is
+    /// no memory.
+    SceneGpu(const Scene& scene, const WorldMesh& mesh);
     /// Takes a geometry that was made before, beside the thread that draws.
     SceneGpu(const Scene& scene, const SceneGeometry& geometry);
 
@@ -70,7 +73,7 @@ public:
     uint64_t version() const { return version_; }              // another one when it looks different
 
 private:
-    GLuint textureOf(const Scene& scene, const TextureRef& use, bool srgb);
+    GLuint textureOf(const Scene& scene, const TextureRef& use, bool srgb, Warnings& warnings);
 
     std::vector<SceneDraw> draws_;
     std::vector<Placement> made_, placements_; // of the instances: when this was made, and now

@@ -1,6 +1,9 @@
 #include "bake/surface/cit_pass.h"
 
+#include "assets/base/log.h"
 #include "assets/base/portions.h"
+#include "assets/base/warnings.h"
+#include "assets/images/box_filter.h"
 #include "bake/base/shader_types.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
@@ -43,6 +46,7 @@ public:
     }
 
     uint64_t bytes() const { return bytes_; }
+    const Warnings& warnings() const { return warnings_; }
 
 private:
     // A texel of the lightmap often covers a long thin strip of a texture.
@@ -71,7 +75,12 @@ private:
         if (isNew) {
             const Image& source = scene_.images[static_cast<size_t>(index)];
             const VkFormat format = srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-            images_.push_back(upload(source.width, source.height, format, source.rgba.data()));
+            const uint32_t most = device_.limits().maxImageDimension2D;
+            const bool fits = std::max(source.width, source.height) <= most;
+            if (!fits) warnings_.add(imageName(scene_, index), tooLarge(source.width, source.height, most));
+            const Image smaller = fits ? Image() : shrunkTo(most, source, srgb);
+            const Image& taken = fits ? source : smaller;
+            images_.push_back(upload(taken.width, taken.height, format, taken.rgba.data()));
         }
         return images_[it->second].view();
     }
@@ -83,6 +92,7 @@ private:
     std::vector<vk::Image2D> images_;
     std::vector<vk::Sampler> samplers_;
     std::vector<vk::RasterProgram::BoundTexture> bound_;
+    Warnings warnings_;
     uint64_t bytes_ = 0;
 };
 
@@ -197,6 +207,10 @@ bool CitPass::serves(const WorldMesh& mesh) const {
     return materialsOf(mesh) == impl_->materials;
 }
 
+std::vector<std::string> CitPass::warnings(const Scene& scene) const {
+    return impl_->array.warnings().lines(scene.path);
+}
+
 uint64_t CitPass::bytes() const {
     return impl_->array.bytes();
 }
@@ -264,7 +278,10 @@ TextureGroup CitPass::draw(const Scene& scene, const WorldMesh& mesh, const CitD
 
 TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene, const WorldMesh& mesh,
                                    const CitDesc& desc) {
-    return CitPass(device, scene, mesh).draw(scene, mesh, desc);
+    CitPass pass(device, scene, mesh);
+    for (const std::string& warning : pass.warnings(scene))
+        spdlog::warn("{}", warning);
+    return pass.draw(scene, mesh, desc);
 }
 
 } // namespace relume

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "assets/atlas/world_mesh.h"
 #include "bake/surface/texture_group.h"
@@ -20,6 +22,8 @@ public:
     bool serves(const WorldMesh& mesh) const;
     /// Draws as rasterizeTextureGroup() does. Factors of materials may have changed, their textures not.
     TextureGroup draw(const Scene& scene, const WorldMesh& mesh, const CitDesc& desc);
+    /// Returns a line for images that are larger than the device's may be, and are made smaller for it.
+    std::vector<std::string> warnings(const Scene& scene) const;
     /// Returns the device bytes of the textures.
     uint64_t bytes() const;
 
@@ -29,7 +33,7 @@ private:
 };
 
 /// Draws the mesh into its lightmap; the triangle drawn last wins. A window has the texels of the whole
-/// lightmap. Throws Error.
+/// lightmap. Logs the warnings of CitPass. Throws Error.
 TextureGroup rasterizeTextureGroup(const vk::Device& device, const Scene& scene, const WorldMesh& mesh,
                                    const CitDesc& desc);
 

@@ -26,9 +26,8 @@ double bytesPerTexel(GLenum format) {
 }
 
 void checkSize(const Texture::Desc& desc) {
-    GLint largest = 0;
-    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    if (std::max(desc.width, desc.height) > static_cast<uint32_t>(largest)) {
+    const uint32_t largest = largestTexture();
+    if (std::max(desc.width, desc.height) > largest) {
         throw Error(
             fmt::format("{}: {} x {} is too large: this OpenGL driver takes at most {} along one side",
                         desc.name, desc.width, desc.height, largest));
@@ -36,6 +35,12 @@ void checkSize(const Texture::Desc& desc) {
 }
 
 } // namespace
+
+uint32_t largestTexture() {
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    return static_cast<uint32_t>(largest);
+}
 
 uint32_t mipCount(uint32_t width, uint32_t height) {
     return static_cast<uint32_t>(std::bit_width(std::max(width, height)));

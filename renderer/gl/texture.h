@@ -39,6 +39,9 @@ private:
     uint32_t width_ = 0, height_ = 0;
 };
 
+/// Returns how many texels a texture of the current context may have along a side.
+uint32_t largestTexture();
+
 /// Returns how many levels a whole chain of mips has.
 uint32_t mipCount(uint32_t width, uint32_t height);
 

@@ -6,11 +6,14 @@
 #include "bake/surface/patches.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/gpu_environment.h"
+#include "tests/log_capture.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <string>
 #include <vector>
 
 namespace relume {
@@ -87,6 +90,52 @@ TEST(TextureGroup, APassThatStaysFollowsFactorsOfMaterials) {
         ASSERT_EQ(kept.mat[i], anew.mat[i]);
     const std::vector<uint32_t> plate = {6};
     EXPECT_FALSE(pass.serves(flattenInstances(scene, atlas, plate)));
+}
+
+// A valid image may be larger than the device's: it is made smaller, which one line tells.
+TEST(TextureGroup, AnImageThatIsTooLargeForTheDeviceIsMadeSmaller) {
+    SceneMaker maker(kGroupSize);
+    Material material;
+    material.metallic = 0.0f;
+    material.baseColorTexture.texture = maker.alphaTexture(2, 1, {255, 255});
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(material), {kGroupSize, kGroupSize});
+    Scene scene = maker.scene();
+    scene.path = "wide.glb";
+    const auto paint = [&scene](uint32_t width) { // the left half in one colour, the right one in another
+        Image& image = scene.images[0];
+        image.width = width;
+        image.rgba.clear();
+        for (uint32_t x = 0; x < width; ++x) {
+            const auto pixel = 2 * x < width ? std::array<uint8_t, 4>{200, 100, 50, 255}
+                                             : std::array<uint8_t, 4>{10, 20, 250, 255};
+            image.rgba.insert(image.rgba.end(), pixel.begin(), pixel.end());
+        }
+    };
+    const auto rasterized = [&scene] {
+        return rasterizeTextureGroup(testDevice(), scene, flatten(scene, buildAtlas(scene, kGroupSize)),
+                                     {.size = kGroupSize});
+    };
+    paint(2);
+    const LogCapture log;
+    const TextureGroup wanted = rasterized();
+    EXPECT_EQ(log.text(), "");
+    const uint32_t most = testDevice().limits().maxImageDimension2D;
+    paint(most);
+    rasterized();
+    EXPECT_EQ(log.text(), "");
+    paint(most + most / 4);
+    const TextureGroup group = rasterized();
+    for (const uint32_t column : {kGroupSize / 4, kGroupSize * 3 / 4})
+        for (uint32_t row = 0; row < kGroupSize; ++row) {
+            const size_t texel = size_t{row} * kGroupSize + column;
+            for (glm::length_t c = 0; c < 3; ++c)
+                ASSERT_NEAR(group.mat[texel][c], wanted.mat[texel][c], 0.002f) << column << ", " << row;
+        }
+    const std::string text = log.text();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_NE(text.find("wide.glb: image 0 'alpha': has " + std::to_string(most + most / 4) + " x 1 pixels"),
+              std::string::npos)
+        << text;
 }
 
 // The patches of a window are those of the whole that lie in it.

@@ -2,10 +2,12 @@
 // lightmaps.
 #include "assets/base/error.h"
 #include "assets/images/metrics.h"
+#include "renderer/gl/texture.h"
 #include "renderer/picture.h"
 #include "shaders/shader_library.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/gpu/wall_scene.h"
+#include "tests/log_capture.h"
 #include "tests/temporary_folder.h"
 
 #include <gtest/gtest.h>
@@ -100,6 +102,29 @@ TEST(Renderer, CutsOutTheHolesOfAMask) {
     const Picture picture = drawPicture({maker.scene(), &lightmap, before(), settings});
     EXPECT_EQ(picture.pixel(8, 32).r, background(settings));
     EXPECT_EQ(picture.pixel(56, 32), glm::ivec3(encoded(0.5)));
+}
+
+// A valid image may be larger than the driver's: it is made smaller, which one line tells.
+TEST(Renderer, MakesAnImageThatIsTooLargeForTheDriverSmaller) {
+    testContext();
+    const uint32_t most = gl::largestTexture(), width = most + most / 4;
+    std::vector<uint8_t> alpha(width);
+    std::fill(alpha.begin() + width / 2, alpha.end(), uint8_t{255});
+    SceneMaker maker(kWallSize);
+    Material masked = grey(1.0f);
+    masked.alphaMode = AlphaMode::Mask;
+    masked.baseColorTexture.texture = maker.alphaTexture(width, 1, alpha);
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(masked), {kWallSize, kWallSize});
+    const FloatImage lightmap = lightmapOf(0.5f);
+    const DrawSettings settings = plain();
+    const LogCapture log;
+    const Picture picture = drawPicture({maker.scene(), &lightmap, before(), settings});
+    EXPECT_EQ(picture.pixel(8, 32).r, background(settings));
+    EXPECT_EQ(picture.pixel(56, 32), glm::ivec3(encoded(0.5)));
+    const std::string text = log.text();
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+    EXPECT_NE(text.find("image 0 'alpha': has " + std::to_string(width) + " x 1 pixels"), std::string::npos)
+        << text;
 }
 
 TEST(Renderer, ShowsBacksOfDoubleSidedMaterialsOnly) {

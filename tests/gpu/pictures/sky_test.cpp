@@ -1,8 +1,10 @@
 // This tests the sky behind a scene: its radiance as displayed, its picture where it belongs.
+#include "renderer/gl/texture.h"
 #include "renderer/picture.h"
 #include "renderer/scene_renderer.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/gpu/wall_scene.h"
+#include "tests/log_capture.h"
 
 #include <gtest/gtest.h>
 
@@ -106,6 +108,26 @@ TEST_F(SkyRenderer, APictureLiesWhereTheBakeTakesItFrom) {
     turned.file = "another.exr";
     gpu_->updateSky(turned);
     near(seen({-s, 1.0f, -c}), colour(0.5, 0.5, 0.5));
+}
+
+TEST_F(SkyRenderer, APictureThatIsTooLargeForTheDriverIsMadeSmaller) {
+    const uint32_t most = gl::largestTexture();
+    Sky& sky = scene_.sky;
+    sky.file = "wide.exr";
+    sky.radiance = glm::vec3(1.0f);
+    sky.width = most + most / 4;
+    sky.height = 1;
+    for (uint32_t x = 0; x < sky.width; ++x) // what lies to the left is red, what lies to the right is blue
+        sky.pixels.push_back(2 * x < sky.width ? glm::vec3(0.8f, 0.0f, 0.0f) : glm::vec3(0.0f, 0.0f, 0.8f));
+    const LogCapture log;
+    EXPECT_EQ(seen({-1.0f, 0.3f, -0.1f}), glm::ivec3(encoded(0.8), 0, 0));
+    EXPECT_EQ(seen({1.0f, 0.3f, -0.1f}), glm::ivec3(0, 0, encoded(0.8)));
+    const std::string text = log.text();
+    EXPECT_NE(text.find("sky 'wide.exr': has " + std::to_string(sky.width) + " x 1 pixels"),
+              std::string::npos)
+        << text;
+    gpu_->updateSkyPicture(sky); // as an edit does
+    EXPECT_EQ(seen({1.0f, 0.3f, -0.1f}), glm::ivec3(0, 0, encoded(0.8)));
 }
 
 TEST_F(SkyRenderer, DoesNotChangeTheExposure) {
