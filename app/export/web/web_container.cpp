@@ -43,7 +43,8 @@ int WebContainer::addSorted(std::string_view bytes, size_t stride) {
 std::string WebContainer::packed() const {
     nlohmann::json whole = header;
     whole["sections"] = sections_;
-    const std::string text = whole.dump();
+    // Names of files and lights may be no UTF-8, which JSON must be.
+    const std::string text = whole.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
     const std::string plain =
         fmt::format("{}{}{}{}", kMagic, bytesOf(static_cast<uint32_t>(text.size())), text, bytes_);
     uLongf size = compressBound(static_cast<uLong>(plain.size()));

@@ -111,6 +111,25 @@ TEST(WebContainer, Base64IsThatOfTheStandard) { // RFC 4648, section 10
     EXPECT_EQ(base64Of("\xff\xfe\xfd"), "//79");
 }
 
+// A file's name may be any bytes, and so may a light's in a file of layers; JSON is UTF-8.
+TEST(WebPage, NamesThatAreNoUtf8AreShownByReplacementCharacters) {
+    const TemporaryFolder folder;
+    Scene scene;
+    scene.path = "rooms/caf\xe9.glb";
+    scene.cameras.push_back({.name = "Door"});
+    LayeredImage image = fourLayers();
+    image.layers[0].name = "L\xe4mp";
+    const WebDesc desc{.path = folder.path("page.html"), .single = true, .frames = {}};
+    EXPECT_NO_THROW(writeWebPage(desc, scene, WorldMesh(), image, "l\xe9.exr"));
+    EXPECT_TRUE(contains(bytesOf(desc.path), "relume.start("));
+    WebContainer container;
+    container.header["name"] = "caf\xe9";
+    addLight(container, image, "l\xe9.exr");
+    const OpenedContainer opened(container.packed());
+    EXPECT_EQ(opened.header["name"], "caf\xef\xbf\xbd");
+    EXPECT_EQ(opened.header["lights"][0]["name"], "L\xef\xbf\xbdmp");
+}
+
 TEST(WebLight, EveryLayerKeepsItsLightWhateverItsBrightness) {
     const LayeredImage image = fourLayers();
     WebContainer container;
