@@ -1,6 +1,7 @@
 #include "app/offline/layer_file.h"
 
 #include "app/offline/light_mix.h"
+#include "app/offline/name_lines.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/images/paged_image.h"
@@ -33,10 +34,10 @@ LightText describe(const Scene& scene, const LightKey& key) {
 }
 
 std::string namesOf(const std::vector<LightSource>& lights) {
-    std::string names;
+    std::vector<std::string> names;
     for (const LightSource& light : lights)
-        names += (names.empty() ? "" : "\n") + light.name;
-    return names;
+        names.push_back(light.name);
+    return joinedLines(names);
 }
 
 // Returns Baker::lightmap without making all layers' images again.

@@ -1,5 +1,6 @@
 #include "app/offline/layer_join.h"
 
+#include "app/offline/name_lines.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
@@ -21,33 +22,6 @@ constexpr const char* kPasses = "relume:passes"; // bounces of all layers togeth
 std::string attributeOf(const FloatImage& image, const char* name) {
     const auto found = image.attributes.find(name);
     return found == image.attributes.end() ? "" : found->second;
-}
-
-// A name may have line ends of its own: they are written as "\\n" and a backslash as two.
-std::string linesOf(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names) {
-        for (const char c : name)
-            text += c == '\n' ? "\\n" : c == '\\' ? "\\\\" : std::string(1, c);
-        text += '\n';
-    }
-    return text;
-}
-
-std::vector<std::string> namesIn(const std::string& lines) {
-    std::vector<std::string> names;
-    std::string name;
-    for (size_t i = 0; i < lines.size(); ++i) {
-        if (lines[i] == '\n') {
-            names.push_back(std::move(name));
-            name.clear();
-        } else if (lines[i] == '\\' && i + 1 < lines.size()) {
-            name += lines[++i] == 'n' ? '\n' : lines[i];
-        } else {
-            name += lines[i];
-        }
-    }
-    return names;
 }
 
 // Returns the first word of `text` that `other` has not; "": it has all of them.

@@ -12,7 +12,8 @@ namespace relume {
 /// Names the attributes that a file of some layers has beside those of a whole bake, so that files of jobs
 /// can be joined and none of another scene gets among them. A file that has all layers has none of them.
 namespace job_attribute {
-constexpr const char* kLights = "relume:all-lights"; // of the composite: the scene's, in order, one per line
+// This one is of the composite: the scene's lights, in order, one per line (name_lines.h).
+constexpr const char* kLights = "relume:all-lights";
 constexpr const char* kScene =
     "relume:scene-fingerprint"; // of the composite: all that a bake reads, hexadecimal
 // This one is of a layer and tells the error of its sum with others. Its numbers are light, variance of

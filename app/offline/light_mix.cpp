@@ -1,6 +1,7 @@
 #include "app/offline/light_mix.h"
 
 #include "app/edit/scene_property.h"
+#include "app/offline/name_lines.h"
 #include "app/text/near_names.h"
 #include "app/text/typed_numbers.h"
 #include "assets/base/error.h"
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 
 namespace relume {
 namespace {
@@ -109,13 +109,8 @@ WeightEdit weightEditOf(std::string_view text) {
 }
 
 std::vector<std::string> membersOf(const LayeredImage::Layer& layer) {
-    std::vector<std::string> names;
     const auto found = layer.attributes.find(layer_attribute::kMembers);
-    if (found == layer.attributes.end()) return names;
-    std::istringstream lines(found->second);
-    for (std::string name; std::getline(lines, name);)
-        names.push_back(name);
-    return names;
+    return found == layer.attributes.end() ? std::vector<std::string>() : namesIn(found->second);
 }
 
 float intensityOf(const LayeredImage::Layer& layer) {

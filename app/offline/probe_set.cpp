@@ -1,6 +1,7 @@
 #include "app/offline/probe_set.h"
 
 #include "app/offline/light_mix.h"
+#include "app/offline/name_lines.h"
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
 
@@ -143,10 +144,10 @@ ProbeSet::Layer probeLayerOf(const ProbeReader& reader, const Json& json, size_t
     const glm::vec3 color = reader.vector(reader.member(json, "color", name), "'color' of " + name);
     attributes[layer_attribute::kColor] = fmt::format("{},{},{}", color.r, color.g, color.b);
     if (json.contains("members")) {
-        std::string& members = attributes[layer_attribute::kMembers];
+        std::vector<std::string> members;
         for (const Json& member : reader.list(json, "members", name))
-            members +=
-                fmt::format("{}{}", members.empty() ? "" : "\n", reader.text(member, "a member of " + name));
+            members.push_back(reader.text(member, "a member of " + name));
+        attributes[layer_attribute::kMembers] = joinedLines(members);
     }
     const Json& all = reader.list(json, "coefficients", name);
     if (all.size() != probes)

@@ -19,8 +19,9 @@ constexpr const char* kUnit = "relume:unit"; // of the intensity
 // is the weight's brightest channel, and the colour is weight / intensity.
 constexpr const char* kIntensity = "relume:intensity";
 constexpr const char* kColor = "relume:color";
-constexpr const char* kStale = "relume:stale";     // why the layer does not show the scene any more, one line
-constexpr const char* kMembers = "relume:members"; // of a group: the names of its lights, one per line
+constexpr const char* kStale = "relume:stale"; // why the layer does not show the scene any more, one line
+// This one is of a group: the names of its lights, one per line (app/offline/name_lines.h).
+constexpr const char* kMembers = "relume:members";
 } // namespace layer_attribute
 
 /// Holds a lightmap light by light: composite = sum of weight x layer.

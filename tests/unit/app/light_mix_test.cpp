@@ -1,5 +1,7 @@
 #include "app/offline/light_mix.h"
 
+#include "app/offline/layer_file.h"
+#include "app/offline/name_lines.h"
 #include "assets/base/error.h"
 
 #include <gtest/gtest.h>
@@ -70,6 +72,36 @@ TEST(LightMix, LightsOfAGroupCannotBeSetApart) {
               "--layer-memory");
     mixLayers(image, sets({"rest*=0.5"}));
     expectSameColor(image.layers[0].weight, {20, 10, 5});
+}
+
+// A light's name may have a line end, as any text of a glTF file.
+TEST(LightMix, NamesOfAGroupMayHaveLineEnds) {
+    const std::vector<std::string> names = {"two\nlines", "a\\nb", "\\", "Lamp 7"};
+    Layer group;
+    group.source.key.kind = LightKey::Kind::Group;
+    group.source.name = "rest";
+    for (const std::string& name : names) {
+        group.members.emplace_back();
+        group.members.back().name = name;
+    }
+    LayeredImage image = board();
+    image.layers[0].name = "rest";
+    image.layers[0].attributes = layerWithoutImage(Scene(), group).attributes;
+    EXPECT_EQ(membersOf(image.layers[0]), names);
+    EXPECT_EQ(errorOf([&] { mixLayers(image, sets({"two\nlines=3"})); }),
+              "light 'two lines' is part of 'rest' and cannot be set apart: set 'rest', or bake with more "
+              "--layer-memory");
+    EXPECT_TRUE(errorOf([&] { mixLayers(image, sets({"two=3"})); }).starts_with("no light is called 'two'"));
+}
+
+TEST(NameLines, ComeBackAsTheyWere) {
+    const std::vector<std::string> plain = {"Lamp 6", "Lamp 7"}, odd = {"\n", "a\\", "\\n\nb", "\xff"};
+    EXPECT_EQ(linesOf(plain), "Lamp 6\nLamp 7\n");
+    EXPECT_EQ(joinedLines(plain), "Lamp 6\nLamp 7"); // the bytes that plain names always had
+    for (const std::vector<std::string>& names : {plain, odd, {}}) {
+        EXPECT_EQ(namesIn(linesOf(names)), names);
+        EXPECT_EQ(namesIn(joinedLines(names)), names);
+    }
 }
 
 TEST(LightMix, TheSumIsThatOfWeightedLayers) {

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace relume {
 namespace {
@@ -93,6 +94,15 @@ TEST(ProbeSet, IsReadAsItWasWritten) {
         EXPECT_EQ(read.layers[l].light.attributes, set.layers[l].light.attributes);
         expectSame(read.layers[l].radiance.at(1), set.layers[l].radiance[1]);
     }
+}
+
+TEST(ProbeSet, NamesOfAGroupMayHaveLineEnds) {
+    ProbeSet set = twoLights();
+    std::string& members = set.layers[1].light.attributes[layer_attribute::kMembers];
+    members = "B\nC\\nD"; // B, and a name of two lines
+    const std::string text = probesJson(set, "p.json");
+    EXPECT_EQ(nlohmann::json::parse(text)["layers"][1]["members"], nlohmann::json({"B", "C\nD"}));
+    EXPECT_EQ(parseProbes(text, "p.json").layers.at(1).light.attributes[layer_attribute::kMembers], members);
 }
 
 TEST(ProbeSet, WithoutLayersOrGridHasNeither) {
