@@ -27,12 +27,19 @@ ProbeLampRay sampleProbeLamp(const shader::Lamp& lamp, const glm::vec3& point, u
         ray.target += shader::kLampGap * (point - ray.target);
         return ray;
     }
+    if (lamp.type == shader::kLampSun) {
+        // The direction is the sample's own: the target less the point would be that of rounded places.
+        const float sine2 = lamp.radius * lamp.radius;
+        ray.direction = shader::coneDirection(-lamp.axis, sine2, u);
+        ray.target = point + reach * ray.direction;
+        ray.lux = 2.0f / (1.0f + std::sqrt(1.0f - sine2)); // the cone's solid angle over its projected one
+        return ray;
+    }
     shader::Patch patch{};
     patch.position = point;
-    patch.normal = patch.shading = lamp.type == shader::kLampSun ? -lamp.axis : glm::vec3(0, 1, 0);
+    patch.normal = patch.shading = glm::vec3(0, 1, 0);
     const glm::vec3 away = lamp.position - point;
-    if (lamp.type != shader::kLampSun && glm::dot(away, away) > 0.0f)
-        patch.normal = patch.shading = glm::normalize(away);
+    if (glm::dot(away, away) > 0.0f) patch.normal = patch.shading = glm::normalize(away);
     const shader::LampSample s = shader::lampSample(lamp, patch, point, u, reach);
     ray.target = s.target;
     const glm::vec3 d = s.target - point;

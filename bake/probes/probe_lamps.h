@@ -16,7 +16,8 @@ struct ProbeLampRay {
 };
 
 /// Returns ray `sample` of the probe of this number, which stands at `point` [m], to the light. `reach` [m]
-/// is how far rays to suns go. Every probe draws points of its own, the same each time.
+/// is how far rays to suns go, which nothing but their targets depends on. Every probe draws points of its
+/// own, the same each time.
 ProbeLampRay sampleProbeLamp(const shader::Lamp& lamp, const glm::vec3& point, uint32_t probe,
                              uint32_t sample, float reach);
 

@@ -1,6 +1,7 @@
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
 #include "bake/probes/probe_grid.h"
+#include "bake/probes/probe_lamps.h"
 #include "bake/probes/probe_light.h"
 
 #include <array>
@@ -111,6 +112,33 @@ TEST(ProbeLight, TheSkyShinesWhereNothingIsMetForLightsThatHaveIt) {
     const auto lit = gatherProbes(pool, uniformLinks(shader::kLinkSky), lights);
     EXPECT_NEAR(lit[0].at(0)[0].z, 3.0 * std::sqrt(4.0 * kPi), 0.03);
     EXPECT_EQ(lit[1].at(0)[0].z, 0.0);
+}
+
+// Floats are 0.06 m apart a million metres from the origin, but a sun's light comes from where it did.
+TEST(ProbeLight, ASunShinesFromItsDirectionFarFromTheOrigin) {
+    WorkerPool pool(1);
+    shader::Lamp sun{};
+    sun.type = shader::kLampSun;
+    sun.axis = glm::normalize(glm::vec3(-0.3f, -0.8f, 0.5f));
+    sun.radius = 0.1f;
+    sun.samples = kProbeLampSamples;
+    const auto lit = [&](const glm::vec3& point) {
+        ProbeLinks links{.points = {point}, .lamps = {sun}, .targets = kProbeLampSamples};
+        links.seen.assign(kProbeLampSamples, 1);
+        const std::array<ProbeLight, 1> light = {ProbeLight{.lamps = {glm::vec3(5.0f)}}};
+        return gatherProbes(pool, links, light).at(0).at(0);
+    };
+    const Harmonics near = lit(glm::vec3(0.0f)), far = lit({1e6f, 1e6f, -1e6f});
+    for (size_t i = 0; i < near.size(); ++i)
+        EXPECT_NEAR(far[i].x, near[i].x, 1e-6) << i;
+    const std::array<double, 9> values = harmonicsAt(-sun.axis);
+    EXPECT_NEAR(near[0].x, 5.0 * values[0], 0.01); // it brings its lux, from around its middle
+    EXPECT_NEAR(near[1].x, 5.0 * values[1], 0.05);
+    // A ray starts where the probe stands, and leads that way as far as it is asked to.
+    const ProbeLampRay ray = sampleProbeLamp(sun, {2.0f, 3.0f, 4.0f}, 0, 5, 100.0f);
+    const glm::vec3 end = glm::vec3(2.0f, 3.0f, 4.0f) + 100.0f * ray.direction;
+    for (glm::length_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(ray.target[c], end[c], 1e-4f);
 }
 
 TEST(ProbeLight, IsTheSameOnAnyNumberOfThreads) {
