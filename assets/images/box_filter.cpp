@@ -117,10 +117,10 @@ std::string imageName(const Scene& scene, int image) {
     return name.empty() ? fmt::format("image {}", image) : fmt::format("image {} {}", image, inQuotes(name));
 }
 
-std::string tooLarge(uint32_t width, uint32_t height, uint32_t most) {
-    return fmt::format("has {} x {} pixels, more along a side than the {} that this device takes: it is made "
-                       "smaller for it",
-                       width, height, most);
+std::string tooLarge(uint32_t width, uint32_t height, uint32_t most, const char* taker) {
+    return fmt::format("has {} x {} pixels, more along a side than the {} that {} takes: it is made smaller "
+                       "for it",
+                       width, height, most, taker);
 }
 
 } // namespace relume

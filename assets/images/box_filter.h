@@ -17,7 +17,7 @@ void shrinkTo(uint32_t most, Sky& sky);
 
 /// Returns what a warning calls an image of the scene: its number, and its name where it has one.
 std::string imageName(const Scene& scene, int image);
-/// Returns what a warning says of a picture of that size which is made smaller for a device.
-std::string tooLarge(uint32_t width, uint32_t height, uint32_t most);
+/// Returns what a warning says of a picture of that size which is made smaller, for `taker` takes no more.
+std::string tooLarge(uint32_t width, uint32_t height, uint32_t most, const char* taker = "this device");
 
 } // namespace relume

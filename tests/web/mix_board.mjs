@@ -2,7 +2,8 @@
 //
 //     node mix_board.mjs PAGE.html JOB.json FOLDER
 //
-// JOB: { width, height, exposure, mixes: [[{ intensity, color }, ...], ...], glow, touch, keys, slides }. FOLDER gets `mixN.rgb` of each mix
+// JOB: { width, height, exposure, mixes: [[{ intensity, color }, ...], ...], glow, touch, keys, slides, skies: [[words, width, height,
+// most], ...] }. FOLDER gets `mixN.rgb` of each mix
 // (rows from the top, R, G and B, as displayed), `page.png` and result.json: what was asked from a network, the errors, how long it
 // took from a slider to its frame, what keys and fingers did, whether the page scrolls sideways.
 import { readFile, writeFile } from 'node:fs/promises';
@@ -47,6 +48,11 @@ try {
         }, { lights: mix, width: job.width, height: job.height, glow: job.glow ?? false });
         await writeFile(join(folder, `mix${i}.rgb`), Buffer.from(text, 'base64'));
     }
+    if (job.skies)
+        result.skies = await tab.evaluate((skies) => skies.map(([words, width, height, most]) => {
+            const small = relume.shrink.sky(new Uint32Array(words), width, height, most);
+            return [Array.from(small.words), small.width, small.height];
+        }), job.skies);
     // Each slide waits for the frame after the one that it asks for: what it shows was handed to the screen by then.
     for (let i = 0; i < (job.slides ?? 0); ++i)
         result.slides.push(await tab.evaluate(async (position) => {

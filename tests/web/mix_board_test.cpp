@@ -2,9 +2,12 @@
 // show against `relume mix` and `relume shot`.
 #include "assets/base/file_write.h"
 #include "assets/images/image_file.h"
+#include "assets/images/png_write.h"
+#include "assets/images/shared_exponent.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
+#include "tests/unit/glb_builder.h"
 #include "tests/web/web_page.h"
 
 #include <fmt/format.h>
@@ -189,6 +192,80 @@ TEST_F(MixBoard, OtherScenesLookAsAShotHasThem) {
         EXPECT_LE(p99, bound) << name;
         EXPECT_LE(mean, 0.005) << name;
     }
+}
+
+// Makes a floor with a picture of four bands below a sky of four, each as wide as the widest that a page may
+// have, and writes the level. Chromium's software device takes half as much.
+std::string wideLevel(const TemporaryFolder& folder) {
+    constexpr uint32_t kWide = 16383, kSkyWidth = 16384, kSkyHeight = 4;
+    std::string pixels;
+    for (uint32_t i = 0; i < 2 * kWide; ++i) {
+        const uint32_t band = 4 * (i % kWide) / kWide;
+        pixels += {char(band == 0 ? 220 : 40), char(band == 1 ? 220 : 60), char(band == 2 ? 220 : 20)};
+    }
+    const std::string png = writePng(pixels, kWide, 2, 3, "wide");
+    FloatImage sky{kSkyWidth, kSkyHeight, {}, {}, {}};
+    for (const char* channel : {"R", "G", "B"}) {
+        std::vector<float>& plane = sky.add(channel);
+        for (size_t i = 0; i < plane.size(); ++i)
+            plane[i] = 4 * (i % kSkyWidth) / kSkyWidth % 3 == size_t(channel[0] == 'G') ? 0.8f : 0.2f;
+    }
+    writeImage(folder.path("wide.exr"), sky);
+    test::GlbBuilder b;
+    json floor = b.square();
+    floor["attributes"]["TEXCOORD_0"] = b.squareUvs();
+    floor["material"] = 0;
+    b.json["images"] = {
+        {{"bufferView", b.view(std::vector<uint8_t>(png.begin(), png.end()))}, {"mimeType", "image/png"}}};
+    b.json["textures"] = {{{"source", 0}}};
+    b.json["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}, {"metallicFactor", 0}}}}};
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"znear", 0.1}}}}};
+    b.node({{"mesh", b.mesh(floor)}});
+    b.node({{"camera", 0}, {"translation", {0.5, 0.5, 1.4}}});
+    b.json["scenes"] = {{{"nodes", {0, 1}}, {"extras", {{"relume", {{"sky", {{"file", "wide.exr"}}}}}}}}};
+    const std::vector<uint8_t> bytes = b.bytes();
+    writeFileAtomically(folder.path("wide.glb"), std::string(bytes.begin(), bytes.end()));
+    return folder.path("wide.glb");
+}
+
+TEST_F(MixBoard, PicturesThatAreTooLargeForTheDeviceAreMadeSmaller) {
+    const std::string scene = wideLevel(out_), exr = out_.path("layers.exr"), page = out_.path("wide");
+    run({"bake", scene, "--layers", "-o", exr, "--size", "64", "--samples", "16"});
+    run({"export", scene, "--layers", exr, "--web", page});
+    // These become means of two pixels each, two means of a column of three, and what they were.
+    const auto word = [](float red, float green, float blue) {
+        return packSharedExponent({red, green, blue});
+    };
+    const json skies = {{{word(1, 2, 0), word(2, 4, 0), word(8, 0, 0), word(8, 0, 0.5)}, 4, 1, 2},
+                        {{word(1, 1, 1), word(0, 0, 0), word(0.5, 1, 0)}, 1, 3, 2},
+                        {{word(1, 1, 1), word(0, 0, 0), word(0.5, 1, 0)}, 1, 3, 3}};
+    const json told = opened(page + "/index.html", {{"viewport", {1280, 800}},
+                                                    {"width", kPageWidth},
+                                                    {"height", kPageHeight},
+                                                    {"exposure", 0.0},
+                                                    {"glow", true},
+                                                    {"skies", skies},
+                                                    {"mixes", {json::array()}}});
+    const json& small = told["skies"];
+    EXPECT_EQ(small[0], json({{word(1.5, 3, 0), word(8, 0, 0.25)}, 2, 1}));
+    EXPECT_EQ(small[1][1], 1);
+    EXPECT_EQ(small[1][2], 2);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(unpackSharedExponent(small[1][0][0])[c], 2.0f / 3.0f, 0.002f);
+        EXPECT_NEAR(unpackSharedExponent(small[1][0][1])[c],
+                    c == 0   ? 1.0f / 3.0f
+                    : c == 1 ? 2.0f / 3.0f
+                             : 0.0f,
+                    0.002f);
+    }
+    EXPECT_EQ(small[2][0], skies[2][0]) << "what is small enough stays";
+    const std::vector<double> off = differences(0, scene, exr, 0.0);
+    const double mean = std::accumulate(off.begin(), off.end(), 0.0) / double(off.size());
+    std::printf("wide pictures: p99 %.3f %%, mean %.3f %%\n", 100 * off[size_t(0.99 * double(off.size()))],
+                100 * mean);
+    EXPECT_LE(off[size_t(0.99 * double(off.size()))], 0.02);
+    EXPECT_LE(mean, 0.005);
 }
 
 TEST_F(MixBoard, SlidersShowTheirLightWithinATenthOfASecond) {

@@ -21,8 +21,8 @@ constexpr const char* kPage = "index.html";
 constexpr const char* kStyle = "page.css";
 constexpr const char* kData = "scene.js";
 // They run in this order; each needs only those before it.
-constexpr const char* kScripts[] = {"unpack.js",   "maths.js", "mix.js",   "shaders.js", "draw.js",
-                                    "exposure.js", "move.js",  "board.js", "main.js"};
+constexpr const char* kScripts[] = {"unpack.js", "shrink.js",   "maths.js", "mix.js",   "shaders.js",
+                                    "draw.js",   "exposure.js", "move.js",  "board.js", "main.js"};
 
 std::string textOf(const std::string& path) {
     for (const PageText& text : pageTexts())

@@ -3,11 +3,13 @@
 #include "assets/base/error.h"
 #include "assets/images/image_file.h"
 
+#include <fmt/format.h>
 #include <webp/encode.h>
 
 namespace relume {
 namespace {
 
+static_assert(kMostWebp == WEBP_MAX_DIMENSION);
 constexpr float kFrameQuality = 85.0f;
 constexpr float kFastPacking = 50.0f; // of a picture without loss, from 0 to 100
 
@@ -27,8 +29,9 @@ std::string encoded(const WebPConfig& config, const std::string& name, uint32_t 
     WebPPictureFree(&picture);
     WebPMemoryWriterClear(&writer);
     if (good) return out;
-    throw Error(name +
-                ": cannot be written as WebP, which takes at most 16383 x 16383 pixels: make it smaller");
+    throw Error(
+        fmt::format("{}: cannot be written as WebP, which takes at most {} x {} pixels: make it smaller",
+                    name, kMostWebp, kMostWebp));
 }
 
 } // namespace

@@ -2,6 +2,8 @@
 
 #include "app/export/web/web_light.h"
 #include "app/export/web/web_picture.h"
+#include "assets/base/log.h"
+#include "assets/images/box_filter.h"
 #include "assets/images/shared_exponent.h"
 #include "renderer/camera.h"
 #include "renderer/good_view.h"
@@ -106,7 +108,7 @@ public:
         if (isNew) {
             json& textures = to_.header["textures"];
             known->second = static_cast<int>(textures.size());
-            textures.push_back({{"picture", pictureOf(texture.image)},
+            textures.push_back({{"picture", pictureOf(texture.image, srgb)},
                                 {"srgb", srgb},
                                 {"wrapS", static_cast<int>(texture.wrapS)},
                                 {"wrapT", static_cast<int>(texture.wrapT)},
@@ -116,10 +118,14 @@ public:
     }
 
 private:
-    int pictureOf(int image) {
-        const auto [known, isNew] = pictures_.try_emplace(image, kNone);
-        if (isNew) known->second = to_.add(webpOf(scene_.images[static_cast<size_t>(image)]));
-        return known->second;
+    int pictureOf(int number, bool srgb) {
+        const auto [known, isNew] = pictures_.try_emplace(number, kNone);
+        if (!isNew) return known->second;
+        const Image& image = scene_.images[static_cast<size_t>(number)];
+        if (std::max(image.width, image.height) <= kMostWebp) return known->second = to_.add(webpOf(image));
+        spdlog::warn("{}: {}: {}", scene_.path, imageName(scene_, number),
+                     tooLarge(image.width, image.height, kMostWebp, "WebP"));
+        return known->second = to_.add(webpOf(shrunkTo(kMostWebp, image, srgb)));
     }
 
     WebContainer& to_;

@@ -5,8 +5,10 @@
 #include "app/export/web/web_scene.h"
 #include "app/offline/light_mix.h"
 #include "assets/base/error.h"
+#include "assets/decode/webp.h"
 #include "assets/images/image_file.h"
 #include "assets/images/shared_exponent.h"
+#include "tests/log_capture.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 
@@ -207,6 +209,34 @@ TEST(WebLight, FramesAreSpreadEvenlyWithBothEnds) {
     EXPECT_EQ(many.back(), 999u);
     for (size_t i = 1; i < many.size(); ++i)
         EXPECT_NEAR(double(many[i] - many[i - 1]), 999.0 / 47, 1.0);
+}
+
+TEST(WebScene, AnImageThatIsTooLargeForWebpIsMadeSmaller) {
+    constexpr int kWide = 20000;
+    Scene scene;
+    scene.path = "wide.glb";
+    Image image{"bricks", kWide, 1, {}};
+    for (int x = 0; x < kWide; ++x)
+        image.rgba.insert(image.rgba.end(), {200, 100, 50, 255});
+    scene.images.push_back(std::move(image));
+    scene.textures.push_back({.image = 0});
+    scene.cameras.push_back({.name = "Door"});
+    scene.materials.emplace_back().baseColorTexture.texture = 0;
+    scene.materials.emplace_back().emissionTexture.texture = 0; // it is told once
+    WebContainer container;
+    const LogCapture log;
+    addScene(container, scene, WorldMesh(), fourLayers());
+    EXPECT_EQ(log.text().substr(log.text().find("wide.glb")),
+              "wide.glb: image 0 'bricks': has 20000 x 1 pixels, more along a side than the 16383 that WebP "
+              "takes: it is made smaller for it\n");
+    const OpenedContainer opened(container.packed());
+    const auto picture = opened.values<uint8_t>(opened.header["textures"][0]["picture"].get<int>());
+    const std::optional<std::vector<uint8_t>> pixels = decodeWebp(picture);
+    ASSERT_TRUE(pixels);
+    ASSERT_EQ(pixels->size(), size_t{4} * 16383);
+    EXPECT_EQ(webpSize(picture)->width, 16383u);
+    for (size_t c = 0; c < 4; ++c)
+        EXPECT_EQ((*pixels)[4 * 8000 + c], scene.images[0].rgba[c]);
 }
 
 TEST(WebPage, FramesOfATimelapseAreFoundInOrder) {

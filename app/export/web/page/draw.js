@@ -61,8 +61,7 @@ relume.makeDrawing = async function (canvas, data) {
     const wraps = [gl.REPEAT, gl.MIRRORED_REPEAT, gl.CLAMP_TO_EDGE];
     const textures = [];
     for (const use of header.textures) {
-        const bitmap = await createImageBitmap(data.picture(use.picture),
-            { premultiplyAlpha: 'none', colorSpaceConversion: 'none' });
+        const bitmap = await relume.shrink.texture(data.picture(use.picture), largest);
         const texture = makeTexture(gl.TEXTURE_2D, wraps[use.wrapS], wraps[use.wrapT], gl.LINEAR_MIPMAP_LINEAR,
             use.nearest ? gl.NEAREST : gl.LINEAR);
         gl.texImage2D(gl.TEXTURE_2D, 0, use.srgb ? gl.SRGB8_ALPHA8 : gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
@@ -77,8 +76,9 @@ relume.makeDrawing = async function (canvas, data) {
     let skyPicture = null;
     if (sky.picture >= 0) {
         skyPicture = makeTexture(gl.TEXTURE_2D, gl.REPEAT, gl.CLAMP_TO_EDGE, gl.LINEAR, gl.LINEAR);
-        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB9_E5, sky.width, sky.height, 0, gl.RGB, gl.UNSIGNED_INT_5_9_9_9_REV,
-            data.words(sky.picture));
+        const fitting = relume.shrink.sky(data.words(sky.picture), sky.width, sky.height, largest);
+        gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGB9_E5, fitting.width, fitting.height, 0, gl.RGB, gl.UNSIGNED_INT_5_9_9_9_REV,
+            fitting.words);
     }
 
     const none = gl.createVertexArray();
