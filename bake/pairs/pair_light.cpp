@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "assets/base/error.h"
 #include "bake/base/finite_light.h"
 #include "bake/base/series.h"
 
@@ -12,6 +13,10 @@ namespace {
 
 // One thread sums up the change of so many patches at a time.
 constexpr uint32_t kMeasured = 1u << 16;
+// Light that spreads through a level may change more for some passes, but not for so many, and not by so
+// much of the mean.
+constexpr uint32_t kMostGrowing = 12;
+constexpr double kLeastGrowth = 1e-3;
 
 } // namespace
 
@@ -38,6 +43,7 @@ std::optional<double> PairLight::measure(WorkerPool& pool) {
     const double change = all.count > 0 ? std::sqrt(all.squares / static_cast<double>(all.count)) : 0.0;
     const double mean = all.count > 0 ? all.light / static_cast<double>(all.count) : 0.0;
     requireFiniteLight(mean, change);
+    if (dark_) requireDecay(change, mean);
     const std::optional<SeriesRest> rest = seriesRest(state_.lastChange, change, mean);
     if (rest) left_ = static_cast<float>(rest->ratio < 1.0 ? rest->ratio / (1.0 - rest->ratio) : 1.0);
     state_.lastChange = change;
@@ -45,6 +51,17 @@ std::optional<double> PairLight::measure(WorkerPool& pool) {
     if (first && dark_) state_.convergence.add(0.0);
     state_.convergence.add(mean);
     return rest ? std::optional(rest->error) : std::nullopt;
+}
+
+// Surfaces reflect less than all, so in the end each bounce brings less than the one before. It does not
+// where form factors of senders sum to more than 1.
+void PairLight::requireDecay(double change, double mean) {
+    const bool grows = state_.lastChange > 0 && change >= state_.lastChange && change > kLeastGrowth * mean;
+    growing_ = grows ? growing_ + 1 : 0;
+    if (growing_ >= kMostGrowing)
+        throw Error(
+            "the light grows from pass to pass, as the method's senders are too coarse for what lies close "
+            "to them here: give a smaller --window, or --method hybrid");
 }
 
 // Sums up the change of the patches from `first` on.

@@ -22,8 +22,9 @@ public:
     PairLight(const PatchSet& patches, std::vector<glm::vec4> start, bool dark);
 
     const std::vector<glm::vec4>& light() const { return last_; }
-    /// Takes the light after a pass, which `read` writes. Throws Error where it is not finite. Returns the
-    /// error that is left, relative to the mean light, where it can be told.
+    /// Takes the light after a pass, which `read` writes. Throws Error where it is not finite, or grows
+    /// without end, as it does where few senders stand for many that are near. Returns the error that is
+    /// left, relative to the mean light, where it can be told.
     std::optional<double> take(WorkerPool& pool, const std::function<void(std::vector<glm::vec4>&)>& read);
     /// Returns how far each patch's light may still be off; empty until it can be told.
     std::vector<float> errors() const;
@@ -40,12 +41,14 @@ private:
     };
     Sums changeOf(uint32_t first) const;
     std::optional<double> measure(WorkerPool& pool);
+    void requireDecay(double change, double mean);
 
     const PatchSet& patches_;
     const bool dark_;
     State state_;
     std::vector<glm::vec4> last_, before_; // of the last finished pass, of the one before it
     std::optional<float> left_;            // share of the last change that is still to come
+    uint32_t growing_ = 0;                 // passes in a row that changed more than the one before
 };
 
 } // namespace relume

@@ -233,6 +233,36 @@ TEST(PairLight, TellsWhatAGeometricSeriesStillBrings) {
     EXPECT_THROW(bounce(std::numeric_limits<float>::infinity()), Error);
 }
 
+// Light that grows for ever is an error of its own, told long before it is too large for a float. RTRad's
+// preset goes on as RTRad does.
+TEST(PairLight, LightThatGrowsWithoutEndIsAnError) {
+    PatchSet patches;
+    patches.count = shader::kChunk;
+    patches.scene.patches.resize(patches.count);
+    for (shader::Patch& patch : patches.scene.patches)
+        patch.flags = shader::kPatchSends;
+    WorkerPool pool(2);
+    const auto passesUntilError = [&](bool dark, float growth) {
+        PairLight light(patches, std::vector<glm::vec4>(patches.count, glm::vec4(0.0f)), dark);
+        float value = 0, change = 1;
+        for (int pass = 1; pass <= 64; ++pass, change *= growth) {
+            value += change;
+            try {
+                light.take(pool, [&](std::vector<glm::vec4>& to) {
+                    std::fill(to.begin(), to.end(), glm::vec4(glm::vec3(value), 1.0f));
+                });
+            } catch (const Error& error) {
+                EXPECT_NE(std::string(error.what()).find("--window"), std::string::npos);
+                return pass;
+            }
+        }
+        return 0;
+    };
+    EXPECT_EQ(passesUntilError(true, 1.1f), 13);
+    EXPECT_EQ(passesUntilError(true, 0.99f), 0);
+    EXPECT_EQ(passesUntilError(false, 1.1f), 0);
+}
+
 // Each process has the super-blocks that give light to rows of its own, and together they have all pairs.
 TEST(PairPlan, OwnRowsHaveAllOfTheirSuperBlocks) {
     const std::vector<uint32_t> sends(kChunksOfFour, 1);
