@@ -88,6 +88,7 @@ LayeredImage ownLayers(const BakeOptions& o, const BakeRequest& request, const S
     LayeredImage layers = writtenLayers(o, baker, scene, request);
     addLightmapAttributes(layers.composite, o.files.scene, request.bake, request.lightmap,
                           baker.solver().progress());
+    noteSceneOut(layers.composite, o.files.sceneOut);
     return layers;
 }
 
@@ -105,9 +106,11 @@ double writeMaps(const BakeOptions& o, const BakeRequest& request, const Prepare
     if (o.layers.on && layers.layers.empty()) layers = ownLayers(o, request, prepared.scene, baker);
     FloatImage image = o.layers.on ? layers.composite : baker.lightmap(request.lightmap);
     const double made = cpuSeconds();
-    if (!o.layers.on)
+    if (!o.layers.on) {
         addLightmapAttributes(image, o.files.scene, request.bake, request.lightmap,
                               baker.solver().progress());
+        noteSceneOut(image, o.files.sceneOut);
+    }
     const ExrType type = o.files.half ? ExrType::Half : ExrType::Float;
     const ExrCompression compression = compressionOf(o.files.compression);
     if (o.layers.on) {

@@ -15,9 +15,13 @@ std::string attribute(const FloatImage& image, const std::string& name) {
     return found != image.attributes.end() ? found->second : "";
 }
 
+std::string nameOf(const std::string& path) {
+    return path.substr(path.find_last_of('/') + 1);
+}
+
 void warnAboutScene(const FloatImage& image, const std::string& path, const std::string& scene) {
-    const std::string from = attribute(image, "relume:scene");
-    if (!from.empty() && from != scene.substr(scene.find_last_of('/') + 1))
+    const std::string from = attribute(image, "relume:scene"), name = nameOf(scene);
+    if (!from.empty() && from != name && attribute(image, "relume:scene-out") != name)
         spdlog::warn("{}: is a lightmap of {}, not of {}", path, from, scene);
 }
 
@@ -26,7 +30,7 @@ void warnAboutScene(const FloatImage& image, const std::string& path, const std:
 void addLightmapAttributes(FloatImage& image, const std::string& scene, const BakeSettings& bake,
                            const LightmapDesc& lightmap, const SolverProgress& progress) {
     image.attributes["relume:version"] = RELUME_VERSION;
-    image.attributes["relume:scene"] = scene.substr(scene.find_last_of('/') + 1);
+    image.attributes["relume:scene"] = nameOf(scene);
     image.attributes["relume:method"] = methodName(bake.solver.method);
     image.attributes["relume:quantity"] = lightmap.quantity == Quantity::Radiance ? "radiance" : "lighting";
     image.attributes["relume:settings"] =
@@ -34,6 +38,10 @@ void addLightmapAttributes(FloatImage& image, const std::string& scene, const Ba
         fmt::format(" dilate={} sew={}", lightmap.rtrad ? 1 : lightmap.dilate, lightmap.sew ? 1 : 0);
     image.attributes["relume:passes"] = std::to_string(progress.passes);
     image.attributes["relume:error"] = fmt::format("{:.6g}", progress.error);
+}
+
+void noteSceneOut(FloatImage& image, const std::string& sceneOut) {
+    if (!sceneOut.empty()) image.attributes["relume:scene-out"] = nameOf(sceneOut);
 }
 
 FloatImage readLightmap(const std::string& path, const std::string& scene) {

@@ -13,6 +13,10 @@ namespace relume {
 void addLightmapAttributes(FloatImage& image, const std::string& scene, const BakeSettings& bake,
                            const LightmapDesc& lightmap, const SolverProgress& progress);
 
+/// Notes the file name of the scene that is written beside a lightmap, which it is of, too: as attribute
+/// relume:scene-out. Nothing for "".
+void noteSceneOut(FloatImage& image, const std::string& sceneOut);
+
 /// Reads a lightmap that the user made before, of layers their composite. Warns where it was baked for
 /// another scene. Throws Error where it does not hold lighting.
 FloatImage readLightmap(const std::string& path, const std::string& scene);

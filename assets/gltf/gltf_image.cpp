@@ -160,7 +160,7 @@ std::optional<Image> decodeImage(Build& build, size_t index) {
     const json& source = build.images[index];
     const std::string uri = source.value("uri", ""), name = source.value("name", "");
     const bool named = !uri.empty() && !uri.starts_with("data:");
-    const std::string where = named ? fmt::format("image file {}", inQuotes(uri))
+    const std::string where = named ? fmt::format("image file {}", inQuotes(decodedUri(uri)))
                                     : fmt::format("image {} {}", index, inQuotes(name));
     std::string problem;
     Bytes bytes = imageBytes(build, source, problem);

@@ -292,6 +292,13 @@ TEST_F(ExportCommand, LayersGiveTheirSum) {
     for (size_t c = 0; c < 3; ++c)
         for (size_t i = 0; i < a.planes[c].size(); ++i)
             ASSERT_NEAR(a.planes[c][i], b.planes[c][i], 1e-5f * std::abs(a.planes[c][i]));
+    // A scene that was written beside the lightmap is its own, another one is not.
+    relume({"bake", scene_, "-o", path("l.exr"), "--scene-out", path("lit.glb"), "--size", "32", "--samples",
+            "16"});
+    const ProcessResult lit = runRelume(
+        {"export", path("lit.glb"), "-o", path("d"), "--for", "godot", "--lightmap", path("l.exr")});
+    EXPECT_EQ(lit.status, 0) << lit.err;
+    EXPECT_EQ(lit.err.find("is a lightmap of"), std::string::npos) << lit.err;
     const std::string other = path("other.glb");
     std::filesystem::copy_file(scene_, other);
     const ProcessResult run =
