@@ -3,6 +3,7 @@
 #include "assets/base/error.h"
 #include "assets/base/worker_pool.h"
 #include "bake/surface/known_covers.h"
+#include "bake/surface/texel_triangle.h"
 
 #include <algorithm>
 #include <array>
@@ -18,14 +19,11 @@ using shader::kNoPatch;
 using shader::kRimPlaces;
 
 constexpr uint32_t kCells = kCoverEdge * kCoverEdge;
-constexpr uint32_t kBandRows = 8; // that a thread works on at a time
 constexpr uint16_t kRim = (1u << kRimPlaces) - 1;
 constexpr uint16_t kDone = 1u << kRimPlaces; // in place of a rim: the cover is known, and has not all of it
 // Edges are shortened by this share on both sides: what lies on the very edge of a texel may lie in a wall
 // that stands there.
 constexpr float kInset = 1.0f / 256.0f;
-// Charts whose edge is a texel's, too, cover it for all that rounding does [texels].
-constexpr double kEdgeRounding = 1e-3;
 // Points keep to where the surface is no farther from the patch's plane, and from where the patch's own
 // triangle would have it, than this share of the texel: beyond, it bends or is stretched.
 constexpr float kMostBend = 0.05f;
@@ -33,43 +31,6 @@ constexpr float kMostBend = 0.05f;
 constexpr float kMostRise = 0.5f;
 // Normals that differ by more than some 25 degrees are another surface's.
 constexpr float kLeastCosine = 0.9f;
-
-enum class Part { No, Some, All };
-
-// A triangle in the lightmap [texels].
-struct TexelTriangle {
-    std::array<glm::dvec2, 3> corner, edge; // edges from each corner to the next
-    std::array<double, 3> least{}; // how far beyond each edge is still there, times the edge's length
-    double det = 0;                // twice its area, signed
-
-    // Tells whether the triangle has a texel or a part of it, or what may be one for all that rounding does.
-    Part ofTexel(const glm::dvec2& texel) const {
-        Part part = Part::All;
-        for (size_t k = 0; k < 3; ++k) {
-            const glm::dvec2 way = texel - corner[k];
-            const double turn = det > 0 ? 1.0 : -1.0;
-            const double side = (edge[k].x * way.y - edge[k].y * way.x) * turn;
-            const double right = -edge[k].y * turn, up = edge[k].x * turn; // what a texel's edges add
-            if (side + std::max(right, 0.0) + std::max(up, 0.0) < 2 * least[k]) return Part::No;
-            if (side + std::min(right, 0.0) + std::min(up, 0.0) < 0) part = Part::Some;
-        }
-        return part;
-    }
-    // Returns the weights of corners 1 and 2 there.
-    glm::dvec2 weights(const glm::dvec2& at) const {
-        const glm::dvec2 a = corner[1] - corner[0], b = corner[2] - corner[0], q = at - corner[0];
-        return glm::dvec2(q.x * b.y - q.y * b.x, a.x * q.y - a.y * q.x) / det;
-    }
-    // Tells whether a point lies in it, or no farther beyond its edges than rounding does.
-    bool has(const glm::dvec2& at) const {
-        for (size_t k = 0; k < 3; ++k) {
-            const glm::dvec2 way = at - corner[k];
-            const double side = (edge[k].x * way.y - edge[k].y * way.x) * (det > 0 ? 1.0 : -1.0);
-            if (side < least[k]) return false;
-        }
-        return true;
-    }
-};
 
 class CoverBuilder {
 public:
@@ -83,10 +44,11 @@ public:
     // What triangles add to a cover does not depend on their order.
     void run(WorkerPool* pool) {
         const TexelWindow& w = group_.window;
-        const uint32_t bands = (w.rows + kBandRows - 1) / kBandRows;
-        const std::vector<std::vector<uint32_t>> triangles = trianglesOfBands(bands);
-        runWatched(pool, "patches", bands, [&](uint32_t band) {
-            const Rows rows{w.row + band * kBandRows, w.row + std::min(w.rows, (band + 1) * kBandRows) - 1};
+        const WorldMesh& mesh = set_.scene.mesh;
+        const std::vector<std::vector<uint32_t>> triangles =
+            trianglesOfBands(mesh, 0, mesh.opaqueCount, w, group_.size);
+        runWatched(pool, "patches", bandCount(w), [&](uint32_t band) {
+            const TexelRows rows = bandRows(w, band);
             for (uint32_t y = rows.first; known_ && y <= rows.last; ++y)
                 for (uint32_t x = w.column; x < w.column + w.columns; ++x)
                     takeKnown({x, y});
@@ -106,30 +68,6 @@ public:
     }
 
 private:
-    struct Rows {
-        uint32_t first = 0, last = 0; // of the lightmap
-    };
-
-    // Returns the triangles that may cover texels of each band of rows, ascending.
-    std::vector<std::vector<uint32_t>> trianglesOfBands(uint32_t bands) const {
-        const WorldMesh& mesh = set_.scene.mesh;
-        const TexelWindow& w = group_.window;
-        std::vector<std::vector<uint32_t>> result(bands);
-        for (uint32_t t = 0; t < mesh.opaqueCount; ++t) {
-            if (mesh.chart[t] == kNoChart) continue;
-            const glm::vec2* uv = &mesh.lightmapUv[size_t{t} * 3];
-            const double size = group_.size;
-            const double lo = std::floor(std::min({uv[0].y, uv[1].y, uv[2].y}) * size) - w.row,
-                         hi = std::floor(std::max({uv[0].y, uv[1].y, uv[2].y}) * size) - w.row;
-            if (!(hi >= 0) || !(lo < w.rows)) continue;
-            const auto first = static_cast<uint32_t>(std::max(lo, 0.0)) / kBandRows,
-                       last = static_cast<uint32_t>(std::min(hi, w.rows - 1.0)) / kBandRows;
-            for (uint32_t band = first; band <= last; ++band)
-                result[band].push_back(t);
-        }
-        return result;
-    }
-
     // Marks the patch of a texel as done where its cover is known: its cells are there, and its rim is whole
     // or cannot become so.
     void takeKnown(glm::uvec2 texel) {
@@ -169,16 +107,7 @@ private:
     }
 
     TexelTriangle texelTriangle(uint32_t t) const {
-        TexelTriangle result;
-        for (size_t k = 0; k < 3; ++k)
-            result.corner[k] = texelsOf(t, k);
-        for (size_t k = 0; k < 3; ++k) {
-            result.edge[k] = result.corner[(k + 1) % 3] - result.corner[k];
-            result.least[k] = -kEdgeRounding * glm::length(result.edge[k]);
-        }
-        const glm::dvec2 a = result.corner[1] - result.corner[0], b = result.corner[2] - result.corner[0];
-        result.det = a.x * b.y - a.y * b.x;
-        return result;
+        return relume::texelTriangle(set_.scene.mesh, t, group_.size);
     }
 
     // Returns where the patch's own point lies in its texel.
@@ -198,20 +127,11 @@ private:
     }
 
     // Adds what a triangle covers in these rows to the patches of its chart.
-    void cover(uint32_t t, Rows rows) {
+    void cover(uint32_t t, const TexelRows& rows) {
         const TexelTriangle triangle = texelTriangle(t);
         if (!(std::abs(triangle.det) > 0)) return;
-        glm::dvec2 lo = triangle.corner[0], hi = lo;
-        for (const glm::dvec2& c : triangle.corner) {
-            lo = glm::min(lo, c);
-            hi = glm::max(hi, c);
-        }
-        const TexelWindow& w = group_.window;
-        const glm::dvec2 first(w.column, rows.first), last(w.column + w.columns - 1, rows.last);
-        const glm::dvec2 from = glm::max(glm::floor(lo), first), to = glm::min(glm::floor(hi), last);
-        for (double y = from.y; y <= to.y; ++y)
-            for (double x = from.x; x <= to.x; ++x)
-                coverTexel(t, triangle, {static_cast<uint32_t>(x), static_cast<uint32_t>(y)});
+        overBounds(triangle, group_.window, rows,
+                   [&](const glm::uvec2& texel) { coverTexel(t, triangle, texel); });
     }
 
     void coverTexel(uint32_t t, const TexelTriangle& triangle, glm::uvec2 texel) {
@@ -222,11 +142,11 @@ private:
         shader::PatchCover& c = set_.covers[patch];
         if (rims_[patch] == kDone || (c.cells == kCoverCells && rims_[patch] == kRim)) return;
         const glm::dvec2 corner(texel);
-        const Part part = triangle.ofTexel(corner);
-        if (part == Part::No) return;
+        const TexelPart part = triangle.ofTexel(corner);
+        if (part == TexelPart::No) return;
         const auto inside = [&](double x, double y) { return triangle.has(corner + glm::dvec2(x, y)); };
         if (t == own &&
-            (part == Part::All || (inside(0, 0) && inside(1, 0) && inside(0, 1) && inside(1, 1)))) {
+            (part == TexelPart::All || (inside(0, 0) && inside(1, 0) && inside(0, 1) && inside(1, 1)))) {
             c.cells = kCoverCells;
             rims_[patch] = kRim;
             return;
