@@ -4,6 +4,7 @@
 #include "assets/base/watch.h"
 #include "assets/base/worker_pool.h"
 #include "assets/images/float_image.h"
+#include "bake/surface/alpha_tables.h"
 #include "bake/surface/known_covers.h"
 #include "bake/surface/patch_cover.h"
 #include "bake/surface/patch_material.h"
@@ -95,7 +96,7 @@ public:
         inPortions(set_.chunkCount(), kChunksEach,
                    [&](uint32_t chunk) { set_.bounds[chunk] = chunkBounds(set_, chunk); });
         addHitTriangles();
-        addAlpha(); // after the hit triangles
+        addAlphaTables(scene_, set_.scene);
         return std::move(set_);
     }
 
@@ -424,37 +425,6 @@ private:
             }
         }
         return best != kNoPatch ? best : middles_[chart];
-    }
-
-    void addAlpha() {
-        const WorldMesh& m = set_.scene.mesh;
-        constexpr uint32_t kUnused = 0xffffffffu;
-        std::vector<uint32_t> index(materials_.size(), kUnused);
-        for (uint32_t t = m.opaqueCount; t < m.triangleCount(); ++t) {
-            const uint32_t material = m.material[t];
-            if (index[material] == kUnused) {
-                index[material] = static_cast<uint32_t>(set_.scene.alphaMaterials.size());
-                set_.scene.alphaMaterials.push_back(alphaMaterial(materials_[material]));
-            }
-            const glm::vec2* uv = &m.baseUv[size_t{t} * 3];
-            const glm::vec4* c = &m.colors[size_t{t} * 3];
-            set_.scene.alphaTriangles.push_back(
-                {uv[0], uv[1], uv[2], c[0].a, c[1].a, c[2].a, index[material]});
-        }
-    }
-    shader::AlphaMaterial alphaMaterial(const Material& material) {
-        shader::AlphaMaterial result{material.baseColor.a, material.alphaCutoff, 0xffffffffu, 0, 0, 0, 0};
-        if (material.baseColorTexture.texture < 0) return result;
-        const Texture& texture = scene_.textures[static_cast<size_t>(material.baseColorTexture.texture)];
-        const Image& image = scene_.images[static_cast<size_t>(texture.image)];
-        result.texels = static_cast<uint32_t>(set_.scene.alphaTexels.size());
-        result.width = image.width;
-        result.height = image.height;
-        result.wrapS = static_cast<uint32_t>(texture.wrapS);
-        result.wrapT = static_cast<uint32_t>(texture.wrapT);
-        for (size_t i = 3; i < image.rgba.size(); i += 4)
-            set_.scene.alphaTexels.push_back(image.rgba[i]);
-        return result;
     }
 
     const Scene& scene_;
