@@ -5,6 +5,7 @@
 #include "assets/base/warnings.h"
 #include "assets/images/box_filter.h"
 #include "bake/base/shader_types.h"
+#include "bake/surface/masked_texels.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
 
@@ -175,12 +176,10 @@ struct CitPass::Impl {
     // Returns all materials as the shader has them; those that are not used stay as glTF's default one.
     std::vector<shader::CitMaterial> citMaterials(const Scene& scene) const {
         const auto citMaterial = [](const Material& m, const Textures& t) {
-            return shader::CitMaterial{.baseColor =
-                                           glm::vec4(1.0f, 1.0f, 1.0f, m.baseColor.a), // masks need it
+            return shader::CitMaterial{.baseColor = glm::vec4(1.0f, 1.0f, 1.0f, m.baseColor.a),
                                        .emission = glm::vec3(1.0f),
                                        .metallic = m.metallic,
                                        .roughness = m.roughness,
-                                       .alphaCutoff = m.alphaMode == AlphaMode::Mask ? m.alphaCutoff : 0.0f,
                                        .baseTexture = t.base,
                                        .emissionTexture = t.emission,
                                        .metallicTexture = t.metallic};
@@ -273,6 +272,8 @@ TextureGroup CitPass::draw(const Scene& scene, const WorldMesh& mesh, const CitD
     for (size_t i = 0; i < planes.size(); ++i)
         readImage(staging, commands, images[i], window, pool, *planes[i]);
     readImage(staging, commands, images[planes.size()], window, pool, group.triangle);
+    // RTRad knows no holes.
+    if (!desc.rtrad && mesh.opaqueCount < mesh.triangleCount()) findSolidTexels(group, scene, mesh, pool);
     return group;
 }
 

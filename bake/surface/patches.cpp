@@ -3,11 +3,12 @@
 #include "assets/base/error.h"
 #include "assets/base/watch.h"
 #include "assets/base/worker_pool.h"
-#include "assets/images/float_image.h"
 #include "bake/surface/alpha_tables.h"
 #include "bake/surface/known_covers.h"
+#include "bake/surface/masked_texels.h"
 #include "bake/surface/patch_cover.h"
 #include "bake/surface/patch_material.h"
+#include "bake/surface/surface_reader.h"
 #include "bake/surface/triangle_frame.h"
 
 #include <algorithm>
@@ -45,15 +46,15 @@ struct NewPatch {
 };
 
 struct ThinChart {
-    uint32_t triangle = 0; // its largest one
-    float area = 0.0f;     // [m^2], of the whole chart
+    uint32_t triangle = 0; // the one with the largest solid part
+    float area = 0.0f;     // [m^2], of all that is solid in the chart
 };
 
 class PatchBuilder {
 public:
     PatchBuilder(const Scene& scene, WorldMesh mesh, const TextureGroup& group, const PatchDesc& desc)
         : scene_(scene), materials_(scene.materials), group_(group), rtrad_(desc.rtrad), part_(desc.part),
-          pool_(desc.pool) {
+          pool_(desc.pool), reader_(scene, set_.scene.mesh) {
         if (!rtrad_) set_.maxAlbedo = kMaxAlbedo / std::max(desc.reflectivity, 1e-6f);
         materials_.emplace_back(); // glTF's default material
         set_.scene.mesh = std::move(mesh);
@@ -115,20 +116,20 @@ private:
     // hits.
     void surveyCharts() {
         const WorldMesh& m = set_.scene.mesh;
+        const std::vector<float> solidAreas = findSolidAreas();
         std::vector<double> area(m.chartCount, 0.0), texels(m.chartCount, 0.0);
         std::vector<uint32_t> largest(m.chartCount, kNoPatch);
         for (uint32_t t = 0; t < m.triangleCount(); ++t) {
             const uint32_t chart = m.chart[t];
-            // The holes of a masked chart are no patches, and only its texels tell how much of it is hole.
-            if (chart == kNoChart || (!rtrad_ && t >= m.opaqueCount)) continue;
-            area[chart] += frames_[t].area;
-            if (largest[chart] == kNoPatch || frames_[t].area > frames_[largest[chart]].area)
-                largest[chart] = t;
+            if (chart == kNoChart || (isMasked(t) && solidAreas[t] == 0.0f)) continue; // all hole
+            area[chart] += solidAreas[t];
+            if (largest[chart] == kNoPatch || solidAreas[t] > solidAreas[largest[chart]]) largest[chart] = t;
         }
         // In the texels' order: a window then sums up a chart as the whole lightmap does, to the bit.
-        for (uint32_t id : group_.triangle) {
+        for (size_t i = 0; i < group_.triangle.size(); ++i) {
+            const uint32_t id = group_.triangle[i];
             if (id == 0 || m.chart[id - 1] == kNoChart) continue;
-            texels[m.chart[id - 1]] += texelArea_[id - 1];
+            texels[m.chart[id - 1]] += texelArea_[id - 1] * group_.solidAt(i);
         }
         areaScale_.assign(m.chartCount, 1.0f);
         thin_.resize(size_t{tileColumns()} * ((group_.window.rows + kTileTexels - 1) / kTileTexels));
@@ -143,6 +144,20 @@ private:
                         {largest[chart], static_cast<float>(area[chart])});
             }
         }
+    }
+
+    // Returns the area of each triangle without its holes [m^2].
+    std::vector<float> findSolidAreas() const {
+        const WorldMesh& m = set_.scene.mesh;
+        std::vector<float> areas(m.triangleCount());
+        inPortions(m.triangleCount(), kTrianglesEach, [&](uint32_t t) {
+            areas[t] = frames_[t].area;
+            if (isMasked(t) && m.chart[t] != kNoChart) areas[t] *= solidShare(reader_, m, t, group_.size);
+        });
+        return areas;
+    }
+    bool isMasked(uint32_t triangle) const { // RTRad knows no holes
+        return !rtrad_ && triangle >= set_.scene.mesh.opaqueCount;
     }
 
     // Counts the window's tiles along a row.
@@ -296,59 +311,43 @@ private:
         p.emission = group_.emission[at];
         p.material = set_.scene.mesh.material[triangle];
         p.instance = set_.scene.mesh.instance[triangle];
+        // Holes send nothing. The offset stays that of the whole texel.
+        const float solid = group_.solidAt(at);
+        p.patch.area *= solid;
+        p.edges.du *= std::sqrt(solid);
+        p.edges.dv *= std::sqrt(solid);
         return p;
     }
 
-    // Makes the one patch of a chart that covers no texel centre: at the centroid of its largest triangle,
-    // with the whole chart's area and the colour in the triangle's middle.
+    // Makes the one patch of a chart that covers no texel centre: in the middle of its largest triangle, or
+    // in the solid place nearest to it, with all of the chart's solid area and the colour that is there.
     NewPatch thinPatch(const ThinChart& thin) const {
         const WorldMesh& m = set_.scene.mesh;
         const glm::vec3* p = &m.positions[size_t{thin.triangle} * 3];
         const glm::vec3* n = &m.normals[size_t{thin.triangle} * 3];
+        glm::vec3 position = (p[0] + p[1] + p[2]) / 3.0f, shading = n[0] + n[1] + n[2];
+        SurfaceColour colour;
+        if (isMasked(thin.triangle)) {
+            const SolidPart part = solidPart(reader_, m, thin.triangle, group_.size);
+            position = p[0] + ((p[1] - p[0]) * part.place.y + (p[2] - p[0]) * part.place.z);
+            shading = n[0] * part.place.x + n[1] * part.place.y + n[2] * part.place.z;
+            colour = part.colour;
+        } else {
+            colour = reader_.colourAt(thin.triangle, glm::vec3(1.0f / 3.0f));
+        }
         const glm::vec3 normal = frames_[thin.triangle].normal;
         const glm::vec3 side = glm::normalize(p[1] - p[0]) * std::sqrt(thin.area);
         const glm::uvec2 texel = texelOf(centroidUv(thin.triangle));
         NewPatch result;
         result.chart = m.chart[thin.triangle];
         result.edges = {side, glm::cross(normal, side)};
-        fill(result, (p[0] + p[1] + p[2]) / 3.0f, n[0] + n[1] + n[2], normal, thin.area,
-             texel.y * group_.size + texel.x);
+        fill(result, position, shading, normal, thin.area, texel.y * group_.size + texel.x);
         result.patch.flags |= shader::kPatchThin;
         result.material = m.material[thin.triangle];
         result.instance = m.instance[thin.triangle];
-        const Material& material = materials_[result.material];
-        const glm::vec4 color = m.colors[size_t{thin.triangle} * 3];
-        const glm::vec4 surface =
-            textureAt(material.metallicRoughnessTexture, m.metallicUv, thin.triangle, false);
-        const float metallic = material.metallic * surface.b, roughness = material.roughness * surface.g;
-        const float diffuse = 1.0f - metallic + 0.5f * metallic * roughness * roughness;
-        const glm::vec4 base = textureAt(material.baseColorTexture, m.baseUv, thin.triangle, true);
-        result.albedo = color * base * diffuse;
-        result.emission = textureAt(material.emissionTexture, m.emissionUv, thin.triangle, true);
+        result.albedo = colour.albedo;
+        result.emission = colour.emission;
         return result;
-    }
-
-    // Returns the texture's texel in the middle of a triangle, repeated beyond the edges; white without a
-    // texture.
-    glm::vec4 textureAt(const TextureRef& ref, const std::vector<glm::vec2>& uvs, uint32_t triangle,
-                        bool srgb) const {
-        if (ref.texture < 0) return glm::vec4(1.0f);
-        const int index = scene_.textures[static_cast<size_t>(ref.texture)].image;
-        const Image& image = scene_.images[static_cast<size_t>(index)];
-        const glm::vec2* corner = &uvs[size_t{triangle} * 3];
-        const glm::vec2 uv = glm::fract((corner[0] + corner[1] + corner[2]) / 3.0f);
-        const auto x =
-            std::min(image.width - 1, static_cast<uint32_t>(uv.x * static_cast<float>(image.width)));
-        const auto y =
-            std::min(image.height - 1, static_cast<uint32_t>(uv.y * static_cast<float>(image.height)));
-        glm::vec4 value;
-        for (int k = 0; k < 4; ++k) {
-            const float v =
-                static_cast<float>(image.rgba[(size_t{y} * image.width + x) * 4 + static_cast<size_t>(k)]) /
-                255.0f;
-            value[k] = srgb && k < 3 ? static_cast<float>(linearFromSrgb(v)) : v;
-        }
-        return value;
     }
 
     void fill(NewPatch& p, glm::vec3 position, glm::vec3 shading, glm::vec3 normal, float area,
@@ -433,6 +432,7 @@ private:
     const bool rtrad_, part_;
     WorkerPool* const pool_;
     PatchSet set_;
+    const SurfaceReader reader_;               // of the mesh in the set
     std::vector<TriangleFrame> frames_;        // per triangle
     std::vector<float> texelArea_;             // per triangle: of one of its texels [m^2]
     std::vector<float> areaScale_;             // per chart

@@ -29,6 +29,10 @@ struct TextureGroup {
     std::vector<glm::vec4> mat;      // albedo for a base colour factor of 1
     std::vector<glm::vec4> emission; // for an emission factor of 1 cd/m^2
     std::vector<uint32_t> triangle;  // 1 + index in the WorldMesh
+    // The share of each texel's surface that is solid (masked_texels.h); empty: nothing is masked.
+    std::vector<float> solid;
+
+    float solidAt(size_t texel) const { return solid.empty() ? 1.0f : solid[texel]; }
 };
 
 struct CitDesc {

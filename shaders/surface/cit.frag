@@ -1,4 +1,4 @@
-// CIT pass: finds the surface behind a texel's centre.
+// CIT pass: finds the surface behind a texel's centre. Masks are looked at later (bake/surface/masked_texels.h).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_nonuniform_qualifier : require
@@ -59,10 +59,9 @@ void main() {
     vec4 color = colors.items[i] * b.x + colors.items[i + 1u] * b.y + colors.items[i + 2u] * b.z;
 
     CitMaterial m = CitMaterials(push.materials).items[Words(push.material).items[triangle]];
-    bool rtrad = push.rtrad != 0u; // it knows neither vertex colours, nor emission textures, nor holes
+    bool rtrad = push.rtrad != 0u; // it knows neither vertex colours nor emission textures
     if (rtrad) color = vec4(1.0);
     vec4 base = m.baseColor * color * texel(m.baseTexture, uvAt(push.baseUv, b), uvAt(push.baseUv, dx), uvAt(push.baseUv, dy));
-    if (!rtrad && m.alphaCutoff > 0.0 && base.a < m.alphaCutoff) discard;
     vec3 emission = m.emission * texel(rtrad ? -1 : m.emissionTexture, uvAt(push.emissionUv, b), uvAt(push.emissionUv, dx),
                                        uvAt(push.emissionUv, dy)).rgb;
     vec4 surface = texel(m.metallicTexture, uvAt(push.metallicUv, b), uvAt(push.metallicUv, dx), uvAt(push.metallicUv, dy));

@@ -1,10 +1,14 @@
-// Charts that cover no texel centre get one patch each. Here is where that is shown.
+// Charts that cover no texel centre get one patch each. Here is where that is shown, and of which colour and
+// area it is.
 #include "bake/output/lightmap.h"
 #include "bake/surface/patches.h"
 
 #include "assets/atlas/lightmap_atlas.h"
 
 #include <gtest/gtest.h>
+
+#include <tuple>
+#include <vector>
 
 namespace relume {
 namespace {
@@ -64,6 +68,88 @@ TEST(ThinCharts, AreShownWhereNoOtherPatchIs) {
     EXPECT_EQ(lightAt(5, 3), static_cast<float>(mesh.chart[2] + 1));
     EXPECT_EQ(lightAt(6, 6), static_cast<float>(mesh.chart[6] + 1));
     EXPECT_EQ((*image.find("coverage"))[3 * kThinMap + 2], 1.0f);
+}
+
+TextureGroup emptyGroup() {
+    TextureGroup group;
+    group.size = kThinMap;
+    group.window = {0, 0, kThinMap, kThinMap};
+    for (auto* plane : {&group.pos, &group.nrm, &group.mat, &group.emission})
+        plane->resize(group.window.size());
+    group.triangle.resize(group.window.size());
+    return group;
+}
+
+// Gives the slivers of a scene one material with a texture of these texels in a row.
+void paintSlivers(Scene& scene, const std::vector<glm::u8vec4>& texels) {
+    Image image{"paint", static_cast<uint32_t>(texels.size()), 1, {}};
+    for (const glm::u8vec4& t : texels)
+        image.rgba.insert(image.rgba.end(), {t.r, t.g, t.b, t.a});
+    scene.images = {image};
+    scene.textures = {{.image = 0, .wrapS = Wrap::ClampToEdge, .wrapT = Wrap::ClampToEdge}};
+    Material material;
+    material.metallic = 0.0f;
+    material.baseColorTexture.texture = 0;
+    scene.materials = {material};
+    for (Mesh& mesh : scene.meshes)
+        mesh.primitives[0].material = 0;
+}
+
+PatchSet thinPatches(const Scene& scene) {
+    return buildPatches(scene, flatten(scene, buildAtlas(scene, kThinMap)), emptyGroup(), {});
+}
+
+TEST(ThinCharts, HaveTheColourInTheMiddleOfTheirTriangle) {
+    Scene scene;
+    addSliver(scene, 2, 3, 0.1f);
+    Primitive& sliver = scene.meshes[0].primitives[0];
+    // Both triangles have corners 0 and 2; the first one has corner 1, too.
+    sliver.colors = {{1, 0, 0, 1}, {0, 0.5f, 0, 1}, {0, 0, 0.25f, 1}, {0, 0, 0, 1}};
+    const PatchSet set = thinPatches(scene);
+    ASSERT_EQ(set.count, 1u);
+    Material plain; // the default one is a metal
+    const float diffuse = 1.0f - plain.metallic + 0.5f * plain.metallic * plain.roughness * plain.roughness;
+    EXPECT_NEAR(set.albedoPattern[0].r, diffuse / 3.0f, 1e-6);
+    EXPECT_NEAR(set.albedoPattern[0].g, diffuse * 0.5f / 3.0f, 1e-6);
+    EXPECT_NEAR(set.albedoPattern[0].b, diffuse * 0.25f / 3.0f, 1e-6);
+}
+
+TEST(ThinCharts, ReadTheirTextureAsItIsWrapped) {
+    Scene scene;
+    addSliver(scene, 2, 3, 0.1f);
+    paintSlivers(scene, {{255, 255, 255, 255}, {0, 0, 0, 255}, {0, 0, 0, 255}, {0, 0, 0, 255}});
+    for (const auto& [u, wrap, white] :
+         {std::tuple(1.1f, Wrap::Repeat, true), std::tuple(1.1f, Wrap::ClampToEdge, false),
+          std::tuple(1.1f, Wrap::MirroredRepeat, false), std::tuple(-0.1f, Wrap::Repeat, false),
+          std::tuple(-0.1f, Wrap::ClampToEdge, true), std::tuple(-0.1f, Wrap::MirroredRepeat, true)}) {
+        scene.textures[0].wrapS = wrap;
+        scene.meshes[0].primitives[0].texCoord0.assign(4, glm::vec2(u, 0.5f));
+        EXPECT_EQ(thinPatches(scene).albedoPattern[0].r, white ? 1.0f : 0.0f)
+            << u << ", " << static_cast<uint32_t>(wrap);
+    }
+}
+
+// The left half of the sliver is a hole whose texels are bright; of one that is all hole nothing is there.
+TEST(ThinCharts, OfMaskedMaterialsAreThereAsFarAsTheyAreSolid) {
+    Scene scene;
+    addSliver(scene, 2, 3, 0.1f);
+    const float whole = thinPatches(scene).scene.patches[0].area;
+    paintSlivers(scene, {{255, 255, 255, 0}, {0, 255, 0, 255}});
+    scene.materials[0].alphaMode = AlphaMode::Mask;
+    Primitive& sliver = scene.meshes[0].primitives[0];
+    sliver.texCoord0 = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    const PatchSet set = thinPatches(scene);
+    ASSERT_EQ(set.count, 1u);
+    EXPECT_NEAR(set.scene.patches[0].area, 0.5f * whole, 0.03f * whole);
+    EXPECT_NE(set.scene.patches[0].flags & shader::kPatchThin, 0u);
+    EXPECT_EQ(glm::vec3(set.albedoPattern[0]), glm::vec3(0, 1, 0));
+    const float middle = 0.5f * (sliver.positions[0].x + sliver.positions[1].x);
+    EXPECT_GT(set.scene.patches[0].position.x, middle);
+    EXPECT_LT(set.scene.patches[0].position.x, sliver.positions[1].x);
+
+    sliver.texCoord0.assign(4, glm::vec2(0.1f));
+    addSliver(scene, 5, 3, 0.1f); // a lightmap without any patch is an error
+    EXPECT_EQ(thinPatches(scene).count, 1u);
 }
 
 } // namespace
