@@ -423,7 +423,6 @@ struct CitMaterial {
     vec3 emission; // [cd/m^2]
     float metallic;
     float roughness;
-    float alphaCutoff; // 0: not masked
     int baseTexture;   // into the texture array, -1: none
     int emissionTexture;
     int metallicTexture;
