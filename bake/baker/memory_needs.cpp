@@ -21,8 +21,9 @@ constexpr uint64_t kTriangleBytes = 400;
 // The host's copies of a patch and of its light.
 constexpr uint64_t kHostBytes = 216;
 constexpr uint64_t kPictureTexelBytes = 4;
-// Texels as the CIT pass leaves them (TextureGroup), of which each image is read back through a copy.
-constexpr uint64_t kTexelBytes = 4 * sizeof(glm::vec4) + sizeof(uint32_t);
+// Texels as the CIT pass leaves them (TextureGroup), the share that is solid included, which levels without
+// masks do not have. Each image is read back through a copy.
+constexpr uint64_t kTexelBytes = 4 * sizeof(glm::vec4) + sizeof(uint32_t) + sizeof(float);
 constexpr uint64_t kReadBackBytes = sizeof(glm::vec4);
 // Whose patch a texel is, and the patches with all that belongs to them (PatchSet).
 constexpr uint64_t kTableBytes = sizeof(uint32_t);
