@@ -134,6 +134,29 @@ TEST_F(ViewerLights, AreChosenByKeysAndIconsAndDeleted) {
     quit(*viewer);
 }
 
+// A menu acts amid a frame, before the board is drawn.
+TEST_F(ViewerLights, GoByMenusWhileTheBoardIsOpen) {
+    auto viewer = open({"view", kScenes + "cornell_small.glb"});
+    ASSERT_TRUE(viewer->shows("middle: scene", 60)) << viewer->output();
+    const auto choose = [&](const std::string& menu, const std::string& name) {
+        for (const std::string& item : {"Menu/" + menu, menu + "/" + name}) {
+            viewer->settle();
+            const Place place = placeOf(*viewer, item);
+            viewer->mark();
+            viewer->click(place.first, place.second);
+        }
+    };
+    viewer->keys({"alt+4"});
+    viewer->keys({"ctrl+1"});
+    ASSERT_TRUE(viewer->says("action: select light Point")) << viewer->output();
+    choose("Edit", "Undo");
+    EXPECT_TRUE(viewer->shows("undo: Add Point")) << viewer->output();
+    viewer->keys({"ctrl+1"});
+    choose("Light", "Delete light");
+    EXPECT_TRUE(viewer->shows("edit: Delete Point")) << viewer->output();
+    quit(*viewer);
+}
+
 TEST_F(ViewerLightViews, AWipeShowsTheLightBeforeTheEdit) {
     auto viewer = openConverged();
     const FloatImage before = screenshot(*viewer);

@@ -92,6 +92,7 @@ void drawChoices(const PanelContext& context, const char* name, const std::vecto
 }
 
 void drawMenu(const PanelContext& context, const std::string& group) {
+    const ui::ItemLog::Scope scope(context.items, group);
     const Shortcut* before = nullptr;
     for (const Shortcut& shortcut : shortcuts()) {
         if (shortcut.group != group) continue;
@@ -103,6 +104,7 @@ void drawMenu(const PanelContext& context, const std::string& group) {
         const std::string title = titleOf(context, shortcut, enabled);
         if (ImGui::MenuItem(title.c_str(), keyText(shortcut).c_str(), isChecked(context, shortcut), enabled))
             context.perform(shortcut.action, shortcut.argument);
+        ui::mark(shortcut.name.c_str(), false);
     }
 }
 

@@ -86,6 +86,7 @@ private:
     void onClick(const WindowEvent& event);
     bool overScene(const glm::dvec2& at) const;
     void perform(Action action, int argument);
+    void act(Action action, int argument);
     void performView(Action action, int argument);
     void performCamera(Action action);
     void storeBookmark();

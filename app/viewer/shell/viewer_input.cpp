@@ -137,6 +137,11 @@ void Viewer::onClick(const WindowEvent& event) {
 void Viewer::perform(Action action, int argument) {
     feedback_.tell("action", shortcutOf(action, argument).name);
     feedback_.pacer().input();
+    act(action, argument);
+    lights_.follow(); // a menu's action comes amid a frame, whose panels know no light that is gone
+}
+
+void Viewer::act(Action action, int argument) {
     if (within(action, Action::Open, Action::Quit)) return files_.perform(action, argument);
     if (within(action, Action::MakePass, Action::Reset)) return baking_.perform(action);
     if (within(action, Action::AddLight, Action::LightStrength)) return lightKeys_.perform(action, argument);
