@@ -211,25 +211,25 @@ void BakePanel::drawStop(bool& done) {
 void BakePanel::settle(const PanelContext& context, bool done) {
     active_ = ImGui::IsAnyItemActive();
     if (!done) return;
-    problem_ = Session::problem(draft_.bake);
-    waiting_ = !problem_.empty();
-    if (waiting_) return;
-    context.edit("Bake settings", draft_);
+    const std::optional<Document> next = draft_.settle(context.session.document());
+    if (!next) return;
+    context.edit("Bake settings", *next);
     context.endEdit();
 }
 
 void BakePanel::draw(const PanelContext& context) {
     // A change made elsewhere (undo) is taken over, unless something is being typed or was until now: a field
     // tells only one frame later that it was left.
-    if (!waiting_ && !active_ && !ImGui::IsAnyItemActive()) draft_ = context.session.document();
+    draft_.follow(context.session.document(), context.session.firstBake(),
+                  active_ || ImGui::IsAnyItemActive());
     drawBakeProgress(context);
     bool done = false;
     ImGui::PushItemWidth(ImGui::GetFontSize() * -11.0f);
-    if (!problem_.empty() && waiting_) {
+    if (draft_.waits()) {
         ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(1.0f, 0.6f, 0.3f, 1.0f));
-        ImGui::TextWrapped("Not applied: %s", problem_.c_str());
+        ImGui::TextWrapped("Not applied: %s", draft_.problem().c_str());
         ImGui::PopStyleColor();
-        if (ui::button("Back to what is baked")) waiting_ = false;
+        if (ui::button("Back to what is baked")) draft_.drop();
     }
     if (ui::header("Gathering", ImGuiTreeNodeFlags_DefaultOpen)) drawMethod(done);
     if (ui::header("Lightmap", ImGuiTreeNodeFlags_DefaultOpen)) drawLightmap(done);

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <optional>
-#include <string>
-
 #include "app/viewer/panels/panel.h"
+#include "app/viewer/state/bake_draft.h"
 
 namespace relume {
 
@@ -22,10 +20,8 @@ private:
     void drawStop(bool& done);
     void settle(const PanelContext& context, bool done);
 
-    Document draft_;       // what the controls show
-    bool waiting_ = false; // the draft contradicts itself and is not applied
-    bool active_ = false;  // a control was held or typed in when last drawn
-    std::string problem_;
+    BakeDraft draft_;     // what the controls show
+    bool active_ = false; // a control was held or typed in when last drawn
 };
 
 /// Draws the buttons and figures of the panel. They are separate because they stay above the settings.
