@@ -21,10 +21,11 @@ bool sameObjects(const Scene& a, const Scene& b) {
         [](const Instance& x, const Instance& y) { return x.name == y.name && x.mesh == y.mesh; });
 }
 
-// Tells whether another program wrote the file since it was read or saved, and nobody has read it yet.
+// Tells whether another program wrote the file since it was read or saved, and nobody has read it yet. It may
+// have done so while nobody watches, too.
 bool isNewer(const FileWatch& watch) {
     const FileSet now{watch.files().paths, watch.files().timesNow()};
-    return watch.on() && !now.times.empty() && now.times.front() && !watch.isKnown(now);
+    return !now.times.empty() && now.times.front() && !watch.isKnown(now);
 }
 
 } // namespace
@@ -51,7 +52,9 @@ void Session::choose(const GltfChoice& choice) {
 }
 
 void Session::load(const Next& next) {
-    const auto& [path, keep, choice, hasty] = next;
+    finishSaving(next.keep); // so that the load reads what was saved
+    const auto& [wanted, keep, choice, hasty] = next;
+    const std::string path = keep ? prepare_.path : wanted; // the scene may be saved as another file by now
     PrepareDesc desc = prepare_;
     desc.path = path;
     desc.choice = choice;
@@ -65,7 +68,6 @@ void Session::load(const Next& next) {
                     : settings.size;
     };
     spdlog::info("opening {}", path);
-    finishSaving(); // so that the load reads what was saved
     loading_ = {.keep = keep, .hasty = hasty, .fits = desc.leastDensity > 0, .choice = choice};
     // The light of a scene that was written anew stays; another scene is shown as soon as it can be.
     loader_.start(desc, !keep);
@@ -166,8 +168,12 @@ void Session::save(const std::string& path) {
         open(prepare_.path, true);
         nextSave_ = path;
     } else {
-        file_.save(path.empty() ? prepare_.path : path, document_.edits);
+        saveInto(path);
     }
+}
+
+void Session::saveInto(const std::string& path) {
+    file_.save(path.empty() ? prepare_.path : path, document_.edits);
 }
 
 void Session::takeSaved() {
@@ -185,13 +191,20 @@ void Session::takeSaved() {
     }
 }
 
-void Session::finishSaving() {
+// Ends what is to be saved before the next load. A file that another program wrote meanwhile is not saved
+// into before it is read, which that load does where it keeps the scene.
+void Session::finishSaving(bool keep) {
     file_.wait();
     takeSaved();
-    if (!nextSave_ || loader_.loading()) return;
-    save(*std::exchange(nextSave_, std::nullopt));
-    file_.wait();
-    takeSaved();
+    if (!nextSave_) return;
+    if (!isNewer(watch_)) {
+        saveInto(*std::exchange(nextSave_, std::nullopt));
+        file_.wait();
+        takeSaved();
+    } else if (!keep) {
+        nextSave_.reset();
+        fail(prepare_.path + ": not saved, as another program wrote it meanwhile: open it again");
+    }
 }
 
 void Session::take(std::unique_ptr<LoadedScene> scene, const std::string& path) {

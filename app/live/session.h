@@ -123,8 +123,9 @@ private:
     bool finishLoading();
     void take(std::unique_ptr<LoadedScene> scene, const std::string& path);
     SceneEdits reloaded(const PreparedScene& now, const SceneChanges& changes);
+    void saveInto(const std::string& path);
     void takeSaved();
-    void finishSaving();
+    void finishSaving(bool keep);
     void fail(const std::string& message, const std::string& opened = "");
     void pollFile();
 

@@ -6,12 +6,15 @@
 #include "assets/base/log.h"
 #include "assets/gltf/gltf.h"
 #include "tests/text.h"
+#include "tests/ui/glb_json.h"
 #include "tests/unit/session_fixture.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <thread>
 
@@ -200,6 +203,63 @@ TEST_F(SessionSaveTest, TheNewestWishCounts) {
     EXPECT_FALSE(session_.dirty());
     EXPECT_EQ(loadGltf(file()).materials[0].emission.r, wanted);
     EXPECT_LT(session_.saves(), 20u);
+}
+
+TEST_F(SessionSaveTest, WhereNobodyWatchesASaveFindsItsNodesToo) {
+    open();
+    const std::vector<Instance> instances = session_.scene()->prepared.scene.instances;
+    const std::string hidden = instances.at(0).name, other = instances.at(1).name;
+    change("Hide", [](SceneEdits& edits) { edits.placements.at(0).hidden = true; });
+    const std::string swapped = withJson(bytesOf(file()), [&](nlohmann::json& document) {
+        const auto named = [&](const std::string& name) {
+            return std::find_if(document["nodes"].begin(), document["nodes"].end(),
+                                [&](const nlohmann::json& node) { return node.value("name", "") == name; });
+        };
+        ASSERT_NE(named(hidden), document["nodes"].end());
+        ASSERT_NE(named(other), document["nodes"].end());
+        std::swap(*named(hidden), *named(other)); // each has the other's number now
+    });
+    std::ofstream(folder_.path("swapped.glb"), std::ios::binary) << swapped;
+    writeFile(folder_.path("swapped.glb"));
+    ASSERT_TRUE(save());
+    EXPECT_EQ(session_.saves(), 1u);
+    for (const Instance& instance : loadGltf(file()).instances)
+        EXPECT_EQ(instance.hidden, instance.name == hidden) << instance.name;
+}
+
+TEST_F(SessionSaveTest, WaitsForAFileThatIsWrittenAgainWhileItIsRead) {
+    open();
+    session_.watchFile(true);
+    writeFile(kScenes + "cornell_small.glb");
+    ASSERT_TRUE(until([&] { return session_.loading(); }));
+    dim(0.5f);
+    session_.endEdit();
+    session_.save(); // once the file is read
+    Document next = session_.document();
+    next.bake.size = 2 * kSize;
+    session_.edit("Size", next); // reads it once more
+    writeFile(kScenes + "cornell_small.glb");
+    ASSERT_TRUE(until([&] { return !session_.loading() && !session_.saving(); }));
+    EXPECT_EQ(session_.lastError(), "");
+    EXPECT_EQ(session_.saves(), 1u);
+    EXPECT_FALSE(session_.dirty());
+    EXPECT_EQ(session_.scene()->size, 2 * kSize);
+}
+
+TEST_F(SessionSaveTest, WhatAnotherSceneOvertakesIsTold) {
+    open();
+    session_.watchFile(true);
+    writeFile(kScenes + "cornell_small.glb");
+    ASSERT_TRUE(until([&] { return session_.loading(); }));
+    dim(0.5f);
+    session_.endEdit();
+    session_.save();
+    session_.open(kScenes + "cornell_geom.glb");
+    writeFile(kScenes + "cornell_small.glb");
+    ASSERT_TRUE(until([&] { return session_.path() != file() && !session_.loading(); }));
+    EXPECT_FALSE(session_.saving());
+    EXPECT_NE(session_.lastError().find("not saved"), std::string::npos) << session_.lastError();
+    EXPECT_EQ(session_.saves(), 0u);
 }
 
 TEST_F(SessionSaveTest, AFailureIsToldAndTheFileStays) {
