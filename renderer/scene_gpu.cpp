@@ -187,6 +187,7 @@ void SceneGpu::updateSky(const SkySettings& sky) {
 
 void SceneGpu::updateSkyPicture(const Sky& sky) {
     skyPicture_ = {}; // before the new one takes its memory
+    skyFile_.clear(); // which it may not get
     Warnings warnings;
     skyPicture_ = makeSkyPicture(sky, warnings);
     logAll(warnings, "");

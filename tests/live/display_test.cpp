@@ -275,6 +275,21 @@ TEST(Display, ADeviceThatOpenGlDoesNotKnowIsCopiedFrom) {
     EXPECT_EQ(forced.bake().status().doing, why) << "a scene changes nothing";
 }
 
+// A lightmap may be larger than OpenGL's textures, or than what memory the driver has left.
+TEST(Display, ACopyThatOpenGlCannotHoldIsToldAndASmallerOneIsTaken) {
+    testContext();
+    GLint most = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &most);
+    LightmapExchange exchange;
+    exchange.offer({.set = 1, .size = static_cast<uint32_t>(most) + 1});
+    LightmapBridge bridge(exchange);
+    EXPECT_FALSE(bridge.update());
+    EXPECT_FALSE(exchange.claim());
+    exchange.offer({.set = 2, .size = kQuickSize});
+    EXPECT_FALSE(bridge.update()) << "nothing is drawn yet";
+    EXPECT_TRUE(exchange.claim());
+}
+
 // There are descriptors without memory behind them. NVIDIA's driver (580.159) refuses them, and then also the
 // process' next memory.
 TEST(Display, WhatOpenGlCannotImportIsRefused) {

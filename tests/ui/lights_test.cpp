@@ -340,6 +340,32 @@ TEST_F(ViewerSky, TakesAPicture) {
     quit(*viewer);
 }
 
+TEST_F(ViewerSky, IsShownWhereItsPictureIsWiderThanOpenglTakes) {
+    constexpr uint32_t kWide = 40000; // drivers take 16384 or 32768
+    FloatImage image{.width = kWide, .height = 2, .channels = {}, .planes = {}, .attributes = {}};
+    for (const char* channel : {"R", "G", "B"}) {
+        std::vector<float>& plane = image.add(channel);
+        std::fill(plane.begin(), plane.end(), 40.0f);
+    }
+    writeImage(home_.path("wide.exr"), image);
+    auto viewer = open({"view", kScenes + "cornell_small.glb"});
+    ASSERT_TRUE(viewer->shows("middle: scene", 60)) << viewer->output();
+    viewer->keys({"alt+4", "ctrl+6"});
+    EXPECT_TRUE(viewer->shows("edit: Add sky")) << viewer->output();
+    const Place button = placeOf(*viewer, "Lights/Selected/Choose picture");
+    viewer->mark();
+    viewer->click(button.first, button.second);
+    EXPECT_TRUE(viewer->shows("action: Choose the sky's picture")) << viewer->output();
+    viewer->keys({"ctrl+a", "BackSpace"});
+    viewer->type(home_.path("wide.exr"));
+    viewer->mark();
+    viewer->keys({"Return"});
+    EXPECT_TRUE(viewer->says("edit: Picture of the sky", 60)) << viewer->output();
+    viewer->settle();
+    EXPECT_TRUE(viewer->runs());
+    quit(*viewer);
+}
+
 // What was saved as another file is that file from then on.
 TEST_F(ViewerLights, AreSavedAsAnotherFile) {
     const std::string first = home_.path("first.glb"), second = home_.path("second.glb");

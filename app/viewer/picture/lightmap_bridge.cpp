@@ -42,10 +42,10 @@ std::unique_ptr<LightmapBridge::Set> LightmapBridge::allocate(const MapOffer& of
     auto set = std::make_unique<Set>();
     set->number = offer.set;
     set->size = offer.size;
-    for (gl::PixelBuffer& buffer : set->buffers)
-        buffer = gl::PixelBuffer({.width = offer.size, .height = offer.size, .name = "lightmap upload"});
     set->copy = gl::Texture(
         {.width = offer.size, .height = offer.size, .format = GL_RGBA16F, .name = "copied lightmap"});
+    for (gl::PixelBuffer& buffer : set->buffers)
+        buffer = gl::PixelBuffer({.width = offer.size, .height = offer.size, .name = "lightmap upload"});
     return set;
 }
 
@@ -57,7 +57,10 @@ void LightmapBridge::answerOffer() {
     try {
         next_ = offer->shared ? import(*offer) : allocate(*offer);
     } catch (const Error& error) {
-        if (!offer->shared) throw;
+        if (!offer->shared) { // what is shown stays, and the bake waits for the answer to a smaller offer
+            spdlog::error("display: the light is not shown: {}: use a smaller lightmap", error.what());
+            return;
+        }
         spdlog::warn("display: the images of the bake cannot be shared, they are copied: {}", error.what());
         exchange_.refuse(offer->set);
         return;

@@ -21,8 +21,8 @@ void ScenePane::setScene(const LoadedScene* scene) {
     exposures_.clear();
     reference_.reset();
     if (scene == nullptr) return;
-    gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->geometry);
     bounds_ = scene->geometry.bounds;
+    gpu_ = std::make_unique<SceneGpu>(scene->prepared.scene, scene->geometry);
     if (software_) gpu_->setAnisotropy(1.0f);
 }
 

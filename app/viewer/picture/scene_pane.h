@@ -23,7 +23,8 @@ public:
     explicit ScenePane(bool software) : software_(software) {}
     bool software() const { return software_; }
 
-    /// Sets the scene, which is not read afterwards; nullptr: none.
+    /// Sets the scene, which is not read afterwards; nullptr: none. Throws Error where OpenGL has no room for
+    /// it: then there is none. So does setSkyPicture(), which leaves no picture then.
     void setScene(const LoadedScene* scene);
     bool hasScene() const { return gpu_ != nullptr; }
     void setMaterials(const std::vector<Material>& materials);

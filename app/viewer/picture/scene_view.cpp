@@ -1,6 +1,8 @@
 #include "app/viewer/picture/scene_view.h"
 
 #include "app/viewer/state/views.h"
+#include "assets/base/error.h"
+#include "assets/base/log.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +42,17 @@ ScenePane::Look SceneView::look() const {
     return {.camera = camera_.camera(), .state = state_, .lightmap = lightmap, .map = map()};
 }
 
+std::string SceneView::setScene(const LoadedScene& scene) {
+    try {
+        pane_.setScene(&scene);
+    } catch (const Error& error) {
+        const std::string why = scene.prepared.scene.path + ": cannot be drawn: " + error.what();
+        spdlog::error("{}", why);
+        return why;
+    }
+    return "";
+}
+
 bool SceneView::followEarly(const std::function<ViewCamera(const LoadedScene&)>& firstCamera) {
     const LoadedScene* early = session_.early();
     if (early == nullptr) {
@@ -53,7 +66,10 @@ bool SceneView::followEarly(const std::function<ViewCamera(const LoadedScene&)>&
     if (early_.pane && early_.number == early->number) return false;
     if (!early_.pane) early_.former = camera_.camera();
     early_.pane = std::make_unique<ScenePane>(pane_.software());
-    early_.pane->setScene(early);
+    try {
+        early_.pane->setScene(early);
+    } catch (const Error&) { // setScene() tells it of the whole scene
+    }
     early_.number = early->number;
     const ViewCamera camera = firstCamera(*early);
     camera_.set(camera, early->geometry.bounds);

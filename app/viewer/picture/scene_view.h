@@ -40,6 +40,9 @@ public:
     const PublishedMap* map() const;
     ScenePane::Look look() const;
 
+    /// Sets the session's scene. Returns why it cannot be drawn, in one line, which the log has told too; ""
+    /// where it can.
+    [[nodiscard]] std::string setScene(const LoadedScene& scene);
     /// Follows Session::early(): its geometry is shown until its scene is there; where that cannot be read,
     /// the former scene is shown again, as it was seen. `firstCamera` chooses the view. Call it once per
     /// frame, after the scene came. Returns whether another geometry is shown.

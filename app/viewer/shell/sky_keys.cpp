@@ -2,6 +2,7 @@
 
 #include "app/viewer/edits/light_actions.h"
 #include "app/viewer/window/path_completion.h"
+#include "assets/base/error.h"
 
 namespace relume {
 
@@ -32,8 +33,8 @@ void SkyKeys::follow() {
     if (const std::optional<SkyPictures::Result> result = pictures_.poll()) take(*result);
     const LoadedScene* scene = session_.scene();
     const std::string& wanted = session_.document().edits.sky.file;
-    if (scene == nullptr || wanted.empty() || wanted == picture_.pane().skyFile() || wanted == bad_ ||
-        reading())
+    if (scene == nullptr || !picture_.pane().hasScene() || wanted.empty() ||
+        wanted == picture_.pane().skyFile() || wanted == bad_ || reading())
         return;
     const Sky& own = scene->prepared.scene.sky;
     if (own.file == wanted && !own.pixels.empty())
@@ -47,7 +48,12 @@ void SkyKeys::take(const SkyPictures::Result& result) {
         if (!result.chosen) bad_ = result.sky.file;
         return feedback_.note(result.error, true);
     }
-    picture_.pane().setSkyPicture(result.sky);
+    try {
+        picture_.pane().setSkyPicture(result.sky);
+    } catch (const Error& error) { // OpenGL has no room for it, and the picture before is read again
+        if (!result.chosen) bad_ = result.sky.file;
+        return feedback_.note(result.sky.file + ": " + error.what(), true);
+    }
     feedback_.sceneChanged();
     if (!result.chosen || session_.scene() == nullptr) return;
     const LightChange change = skyWithPicture(session_.document(), result.sky.file);

@@ -179,7 +179,7 @@ void Viewer::followScene() {
 
 void Viewer::takeScene() {
     const LoadedScene& scene = *session_.scene();
-    picture_.pane().setScene(&scene);
+    const std::string undrawn = picture_.setScene(scene);
     picture_.state().selected = -1;
     picture_.state().seenTexel.reset();
     lights_.sceneCame();
@@ -195,6 +195,8 @@ void Viewer::takeScene() {
         picture_.camera().setHome(camera);
     }
     files_.sceneCame();
+    if (!undrawn.empty())
+        files_.opening().fail({scene.prepared.scene.path, undrawn}); // it is baked all the same
     inspection_.sceneCame(session_.sceneWasKept());
     feedback_.tell("scene", scene.prepared.scene.path);
     for (const std::string& note : session_.takeReloadNotes())
