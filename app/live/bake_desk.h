@@ -127,7 +127,8 @@ struct BakeOrders {
     struct Export {
         std::string path; // .exr or .png
         LightmapDesc lightmap;
-        std::string scene; // the file that it names as its scene's
+        std::string scene;     // the file that it names as its scene's
+        uint64_t surfaces = 1; // of the scene, as in Start
     };
     struct EngineExport {
         ExportDesc desc;

@@ -362,7 +362,7 @@ void BakeLoop::exportAll() {
     if (waiting_) return;
     if (!bake_.baker()) return refuseExports();
     for (const BakeOrders::Export& wanted : std::exchange(exports_, {}))
-        exportLightmap(wanted, *bake_.baker(), bake_.settings(), [this] { return maps_->lightNow(); });
+        exportLightmap(wanted, bake_, [this] { return maps_->lightNow(); });
     for (const BakeOrders::EngineExport& wanted : std::exchange(engineExports_, {}))
         exportForEngine(wanted, *device_, bake_, [this] { return maps_->lightNow(); });
 }

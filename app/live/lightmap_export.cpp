@@ -7,6 +7,8 @@
 #include "assets/base/log.h"
 #include "assets/images/paged_image.h"
 
+#include <new>
+
 namespace relume {
 namespace {
 
@@ -29,32 +31,46 @@ void exportPage(const WebDesc& desc, const std::string& name, const Scene& scene
         throw Error(desc.path + ": not written, as the page needs a layer for each light: turn on layers");
     const LayeredImage image = layeredImage(*bake.baker(), scene, {});
     writeWebPage(desc, scene, mesh, image, name);
-    spdlog::info("wrote {}", desc.path);
+}
+
+// Tells how an export went. Whatever goes wrong with it, the bake and other exports go on.
+void tell(const std::string& path, const std::function<void()>& write) {
+    try {
+        write();
+        spdlog::info("wrote {}", path);
+    } catch (const Error& error) {
+        spdlog::error("{}", error.what());
+    } catch (const std::bad_alloc&) { // the bake itself has what it needs
+        spdlog::error("{}: not written, as the memory is full: close other programs", path);
+    } catch (const std::exception& error) {
+        spdlog::error("{}: not written: {}", path, error.what());
+    }
+}
+
+void checkScene(const SceneBake& bake, uint64_t surfaces, const std::string& scene) {
+    if (!bake.isOf(surfaces)) throw Error(scene + ": another scene was opened: export again");
 }
 
 } // namespace
 
-void exportLightmap(const BakeOrders::Export& wanted, Baker& baker, const BakeSettings& settings,
-                    const std::function<std::vector<glm::vec4>()>& lightNow) {
-    try {
+void exportLightmap(const BakeOrders::Export& wanted, const SceneBake& bake, const LightNow& lightNow) {
+    tell(wanted.path, [&] {
+        checkScene(bake, wanted.surfaces, wanted.scene);
+        const TransportSettings& transport = bake.settings().solver.transport;
         LightmapDesc desc = wanted.lightmap;
-        desc.rtrad = settings.solver.transport.rtrad;
-        desc.reflectivity = settings.solver.transport.reflectivity;
+        desc.rtrad = transport.rtrad;
+        desc.reflectivity = transport.reflectivity;
         if (desc.rtrad) desc.quantity = Quantity::Radiance;
-        writeLightmap(wanted.path, lightmapNow(desc, wanted.scene, baker, settings, lightNow));
-        spdlog::info("wrote {}", wanted.path);
-    } catch (const Error& error) {
-        spdlog::error("{}", error.what());
-    }
+        writeLightmap(wanted.path, lightmapNow(desc, wanted.scene, *bake.baker(), bake.settings(), lightNow));
+    });
 }
 
 void exportForEngine(const BakeOrders::EngineExport& wanted, const vk::Device& device, const SceneBake& bake,
-                     const std::function<std::vector<glm::vec4>()>& lightNow) {
-    try {
+                     const LightNow& lightNow) {
+    tell(wanted.path(), [&] {
         if (bake.settings().solver.transport.rtrad)
             throw Error("RTRad's units are no light that an engine shows: bake without that preset");
-        if (!bake.isOf(wanted.surfaces))
-            throw Error(wanted.scene + ": another scene was opened: export again");
+        checkScene(bake, wanted.surfaces, wanted.scene);
         const AtlasLevel level = bake.level();
         Scene scene = level.scene;
         scene.materials = wanted.materials;
@@ -62,12 +78,7 @@ void exportForEngine(const BakeOrders::EngineExport& wanted, const vk::Device& d
         if (wanted.web) return exportPage(*wanted.web, wanted.scene, scene, level.mesh, bake);
         const FloatImage lightmap = lightmapNow({}, wanted.scene, *bake.baker(), bake.settings(), lightNow);
         exportLevel(wanted.desc, device, {scene, level.atlas, level.mesh}, lightmap);
-        spdlog::info("wrote {}", wanted.desc.folder);
-    } catch (const Error& error) {
-        spdlog::error("{}", error.what());
-    } catch (const std::bad_alloc&) { // the bake itself has what it needs
-        spdlog::error("{}: not written, as the memory is full: close other programs", wanted.path());
-    }
+    });
 }
 
 } // namespace relume

@@ -198,7 +198,8 @@ TEST_F(LiveBakeTest, AnEditedLevelGoesOnWithWhatStays) {
     EXPECT_GT(darkest, 0.5 * lit);
 
     const TemporaryFolder folder;
-    bake_.exportLightmap({.path = folder.path("live.exr"), .lightmap = {}, .scene = "scene.glb"});
+    bake_.exportLightmap(
+        {.path = folder.path("live.exr"), .lightmap = {}, .scene = "scene.glb", .surfaces = surfaces - 1});
     ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("live.exr")); }));
     Baker baker(testDevice(), saved.scene, saved.mesh, settings);
     while (!baker.solver().done())
@@ -248,6 +249,18 @@ TEST_F(LiveBakeTest, AnEnginesLevelIsTheOneThatIsShown) {
     bake_.exportForEngine(same);
     ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("same/loader.js")); }));
     EXPECT_FALSE(std::filesystem::exists(folder.path("other")));
+}
+
+// An order may be given while its scene is prepared and another one is opened.
+TEST_F(LiveBakeTest, ALightmapOfAnotherSceneIsNotWritten) {
+    const TemporaryFolder folder;
+    start(quickSettings(), false);
+    ASSERT_TRUE(untilShown());
+    bake_.exportLightmap(
+        {.path = folder.path("other.exr"), .lightmap = {}, .scene = "other.glb", .surfaces = 2});
+    bake_.exportLightmap({.path = folder.path("same.exr"), .lightmap = {}, .scene = "scene.glb"});
+    ASSERT_TRUE(until([&] { return std::filesystem::exists(folder.path("same.exr")); }));
+    EXPECT_FALSE(std::filesystem::exists(folder.path("other.exr"))) << "exports come one after another";
 }
 
 // A page has the layers of the bake that is shown; without layers none is written, and the log says so.

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "app/live/session.h"
 #include "app/viewer/edits/light_edits.h"

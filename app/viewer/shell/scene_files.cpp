@@ -145,8 +145,10 @@ void SceneFiles::exportLightmap(const std::string& path) {
     const std::string problem =
         CommandFiles().readsScene("the scene", session.path()).writes("the lightmap", path).clash();
     if (!problem.empty()) return desc_.feedback.note(problem, true);
-    session.bake().exportLightmap(
-        {.path = path, .lightmap = session.document().lightmap, .scene = session.path()});
+    session.bake().exportLightmap({.path = path,
+                                   .lightmap = session.document().lightmap,
+                                   .scene = session.path(),
+                                   .surfaces = session.surfaces()});
     desc_.feedback.note("writing " + path);
 }
 
