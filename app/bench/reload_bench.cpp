@@ -362,7 +362,8 @@ private:
     }
     double differenceFromFresh() {
         const std::string shown = folder_.file("shown.exr");
-        bake_.exportLightmap({.path = shown, .lightmap = {}, .scene = level_});
+        bake_.exportLightmap(
+            {.path = shown, .lightmap = {}, .scene = level_, .surfaces = session_.surfaces()});
         waitFor([&] { return std::filesystem::exists(shown); });
         PreparedScene scene = prepareScene(request_.prepare);
         Baker fresh(device_, scene.scene, std::move(scene.mesh), request_.bake);

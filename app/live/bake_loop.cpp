@@ -60,7 +60,7 @@ void BakeLoop::run() {
             obey(orders);
             if (waiting_) prepare(*std::exchange(waiting_, {}));
             exportAll();
-            if (status_.phase == Phase::Baking) stepSolver();
+            if (steps()) stepSolver();
             publish();
         } catch (const Cancelled&) {
             continue; // the newer command is there, and exports wait for what it makes
@@ -71,7 +71,15 @@ void BakeLoop::run() {
         }
         report(status_.phase != Phase::Baking);
     }
+    endExports(orders);
     giveUp();
+}
+
+// Tells whether the bake goes on now. One that is paused does so until it can follow an edit that an export
+// waits for.
+bool BakeLoop::steps() const {
+    const bool wanted = waiting_ && !(exports_.empty() && engineExports_.empty());
+    return status_.phase == Phase::Baking || (status_.phase == Phase::Paused && wanted);
 }
 
 void BakeLoop::openDevice() {
@@ -122,7 +130,7 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
                o.batchMs || o.seenTiles || o.inspect || o.probes || o.balls || o.voxels ||
                !o.exports.empty() || !o.engineExports.empty();
     };
-    if (status_.phase != Phase::Baking) {
+    if (!steps()) {
         if (maps_ && (maps_->owes() || balls_->owes()))
             desk_.news.wait_for(lock, kSlotWait, something);
         else
@@ -133,9 +141,13 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
     return !orders.quit;
 }
 
-void BakeLoop::obey(BakeOrders& orders) {
+void BakeLoop::takeExports(BakeOrders& orders) {
     std::move(orders.exports.begin(), orders.exports.end(), std::back_inserter(exports_));
     std::move(orders.engineExports.begin(), orders.engineExports.end(), std::back_inserter(engineExports_));
+}
+
+void BakeLoop::obey(BakeOrders& orders) {
+    takeExports(orders);
     if (!maps_) return; // the phase is Failed and stays so
     if (orders.batchMs) desc_.batchMs = *orders.batchMs;
     if (orders.seenTiles) seenTiles_ = std::move(*orders.seenTiles);
@@ -360,18 +372,27 @@ void BakeLoop::inspectMore(const BakeOrders& orders) {
 // Writes what was asked for, once the bake follows the edits before it.
 void BakeLoop::exportAll() {
     if (waiting_) return;
-    if (!bake_.baker()) return refuseExports();
+    if (!bake_.baker()) return refuseExports("there is no bake: begin one");
     for (const BakeOrders::Export& wanted : std::exchange(exports_, {}))
         exportLightmap(wanted, bake_, [this] { return maps_->lightNow(); });
     for (const BakeOrders::EngineExport& wanted : std::exchange(engineExports_, {}))
         exportForEngine(wanted, *device_, bake_, [this] { return maps_->lightNow(); });
 }
 
-void BakeLoop::refuseExports() {
+void BakeLoop::refuseExports(const char* why) {
     for (const BakeOrders::Export& wanted : std::exchange(exports_, {}))
-        spdlog::error("{}: not written, as there is no bake: begin one", wanted.path);
+        spdlog::error("{}: not written, as {}", wanted.path, why);
     for (const BakeOrders::EngineExport& wanted : std::exchange(engineExports_, {}))
-        spdlog::error("{}: not written, as there is no bake: begin one", wanted.path());
+        spdlog::error("{}: not written, as {}", wanted.path(), why);
+}
+
+// Writes what was asked for before the end, as far as the bake is the one that it was asked of.
+void BakeLoop::endExports(BakeOrders& last) {
+    takeExports(last);
+    const bool stands =
+        status_.phase == Phase::Baking || status_.phase == Phase::Paused || status_.phase == Phase::Done;
+    if (stands && !last.start) exportAll();
+    refuseExports("the viewer was closed before it could be: wait for its light");
 }
 
 void BakeLoop::publish() {
@@ -411,7 +432,7 @@ void BakeLoop::fail(const std::string& message) {
     status_.doing = message;
     giveUp();
     letGo();
-    refuseExports();
+    refuseExports("there is no bake: begin one");
 }
 
 void BakeLoop::giveUp() {

@@ -44,12 +44,15 @@ private:
     void ready();
     void onPhase(const char* phase, double done = -1.0);
     void steer(const BakeOrders& orders);
+    bool steps() const;
     void stepSolver();
     void logEnd();
     void applySeen();
     void inspectMore(const BakeOrders& orders);
+    void takeExports(BakeOrders& orders);
     void exportAll();
-    void refuseExports();
+    void refuseExports(const char* why);
+    void endExports(BakeOrders& last);
     void publish();
     bool publishBalls();
     void endMaps();
