@@ -432,6 +432,7 @@ void BakeLoop::fail(const std::string& message) {
     status_.doing = message;
     giveUp();
     letGo();
+    waiting_.reset(); // nobody keeps its scene any more
     refuseExports("there is no bake: begin one");
 }
 
