@@ -183,8 +183,10 @@ void Capture::work() {
             write(job);
         } catch (const std::exception& error) {
             spdlog::error("{}", error.what());
-            failed_ = true; // one message per recording
-            writer_.reset();
+            if (!job.isScreenshot()) {
+                failed_ = true; // one message per recording
+                writer_.reset();
+            }
         }
         if (job.ends) {
             writer_.reset();
@@ -212,7 +214,7 @@ void Capture::beginRecording(const Job& job) {
 }
 
 void Capture::write(const Job& job) {
-    if (job.times == 0 && !job.ends) {
+    if (job.isScreenshot()) {
         makeFolders(job.path);
         const auto nextName = [&] { return captureName(job.path, ".png"); };
         AtomicFile file(nextName());

@@ -55,6 +55,8 @@ private:
         std::string path = {}; // a folder
         uint32_t times = 0;    // how often a recording shows it; 0: a screenshot
         bool ends = false;     // it ends the recording
+
+        bool isScreenshot() const { return times == 0 && !ends; }
     };
     void push(Job job);
     void work();

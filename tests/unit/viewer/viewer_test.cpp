@@ -334,6 +334,30 @@ TEST_F(CaptureName, ManyWritersLoseNoRecording) {
               std::ptrdiff_t{kWriters});
 }
 
+TEST_F(CaptureName, AScreenshotThatFailsLeavesRecordings) {
+    std::ofstream(folder_.path("file")) << "no folder";
+    const auto pixels = [](uint8_t shade) { return Pixels{4, 4, std::vector<uint8_t>(64, shade)}; };
+    const std::string during = folder_.path("during"), after = folder_.path("after");
+    {
+        Capture capture;
+        capture.start(during, 1.0);
+        capture.frame(pixels(40), 1.0);
+        capture.frame(pixels(90), 1.5); // which writes the first one
+        capture.screenshot(pixels(1), folder_.path("file"));
+        capture.stop(2.0);
+        capture.screenshot(pixels(1), folder_.path("file"));
+        capture.start(after, 3.0);
+        capture.frame(pixels(40), 3.0);
+        capture.stop(4.0);
+    }
+    for (const std::string& folder : {during, after}) {
+        ASSERT_TRUE(fs::exists(folder)) << folder;
+        const std::vector<fs::path> files(fs::directory_iterator{folder}, fs::directory_iterator{});
+        ASSERT_EQ(files.size(), 1u) << folder << ": one recording";
+        EXPECT_TRUE(fs::is_directory(files[0]) || fs::file_size(files[0]) > 0) << files[0];
+    }
+}
+
 TEST_F(CaptureName, ARecordingHoldsWhatWasOnScreen) {
     {
         Capture capture;
