@@ -119,9 +119,9 @@ void KeptPreferences::save() {
         std::error_code code; // a folder that cannot be made is told by what is written there
         fs::create_directories(folder, code);
         const FolderLock lock(folder);
-        own_ = mergePreferences(before_, own_, findPreferences(path_).value_or(before_));
-        before_ = own_;
-        writePreferences(path_, own_);
+        Preferences merged = mergePreferences(before_, own_, findPreferences(path_).value_or(before_));
+        writePreferences(path_, merged);
+        before_ = own_ = std::move(merged); // what could not be written is new the next time, too
     } catch (const Error& error) {
         spdlog::warn("{}", error.what());
     }

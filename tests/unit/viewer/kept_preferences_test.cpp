@@ -116,6 +116,24 @@ TEST_F(KeptPreferencesFile, WhereNothingCanBeWrittenTheListIsKeptInMemory) {
     }
 }
 
+TEST_F(KeptPreferencesFile, WhatCouldNotBeWrittenComesWithTheNextSave) {
+    KeptPreferences viewer(path_);
+    open(viewer, "/a.glb");
+    fs::remove(path_);
+    fs::create_directory(path_); // no file can take its place
+    open(viewer, "/b.glb");
+    viewer.values().addBookmark("/b.glb", {});
+    viewer.save();
+    ASSERT_TRUE(fs::is_directory(path_)) << "it was to fail";
+    fs::remove(path_);
+    KeptPreferences other(path_);
+    open(other, "/c.glb");
+    viewer.save();
+    EXPECT_EQ(readPreferences(path_).recent, (Paths{"/b.glb", "/c.glb"}));
+    EXPECT_EQ(readPreferences(path_).bookmarks.count("/b.glb"), 1u);
+    EXPECT_EQ(viewer.values().bookmarks.count("/b.glb"), 1u);
+}
+
 // Without the lock, what one writes between another's reading and writing is lost.
 TEST_F(KeptPreferencesFile, ManyWritersAtOnceAllGetTheirPlace) {
     constexpr size_t kWriters = 4;
