@@ -157,6 +157,34 @@ TEST_F(ViewerLights, GoByMenusWhileTheBoardIsOpen) {
     quit(*viewer);
 }
 
+TEST_F(ViewerLights, KeepANameThatAClickElsewhereEnds) {
+    auto viewer = open({"view", kScenes + "cornell_small.glb"});
+    ASSERT_TRUE(viewer->shows("middle: scene", 60)) << viewer->output();
+    viewer->keys({"alt+4", "ctrl+1"});
+    ASSERT_TRUE(viewer->shows("action: select light Point")) << viewer->output();
+    const auto type = [&](const std::string& text) {
+        const Place field = placeOf(*viewer, "Lights/Selected/Name");
+        viewer->click(field.first, field.second);
+        viewer->settle();
+        viewer->keys({"ctrl+a", "BackSpace"});
+        viewer->settle();
+        viewer->type(text);
+        viewer->settle();
+        const Place strength = placeOf(*viewer, "Lights/Selected/Intensity");
+        viewer->click(strength.first, strength.second);
+    };
+    viewer->mark();
+    type("Lantern");
+    EXPECT_TRUE(viewer->shows("edit: Name of Point")) << viewer->output();
+    EXPECT_TRUE(item(*viewer, "Lights/Lantern/Intensity")) << "the board has it: " << viewer->output();
+    viewer->mark();
+    type("Lantern");
+    viewer->settle();
+    viewer->keys({"ctrl+z"});
+    EXPECT_TRUE(viewer->says("undo: Name of Point")) << "the same name is no step: " << viewer->output();
+    quit(*viewer);
+}
+
 TEST_F(ViewerLightViews, AWipeShowsTheLightBeforeTheEdit) {
     auto viewer = openConverged();
     const FloatImage before = screenshot(*viewer);

@@ -288,7 +288,26 @@ void LightsPanel::drawAngles(const PanelContext& context, const LightSource& sou
     ui::tip("Turn about the upright, tilt (-90: down), roll");
 }
 
+// A field that another control takes the keyboard from is told of only in the next frame, when ImGui no
+// longer has what was typed.
+void LightsPanel::drawName(const PanelContext& context, const LightSource& source) {
+    LightEditor editor(context, source);
+    Light& light = editor.lamp();
+    if (!naming_) std::snprintf(name_.data(), name_.size(), "%s", light.name.c_str());
+    ImGui::PushID(static_cast<int>(source.key.index)); // another light has a field of its own
+    ImGui::InputText("Name", name_.data(), name_.size());
+    ui::mark("Name", true);
+    naming_ = ImGui::IsItemActive();
+    if (ImGui::IsItemDeactivatedAfterEdit() && name_[0] != '\0' && light.name != name_.data()) {
+        light.name = name_.data();
+        editor.follow("Name", true);
+        context.endEdit();
+    }
+    ImGui::PopID();
+}
+
 void LightsPanel::drawLamp(const PanelContext& context, const LightSource& source) {
+    drawName(context, source);
     LightEditor editor(context, source);
     Light& light = editor.lamp();
     const float diagonal = std::max(context.session.scene()->geometry.bounds.diagonal(), 1e-6f);
@@ -305,15 +324,6 @@ void LightsPanel::drawLamp(const PanelContext& context, const LightSource& sourc
         light.innerConeAngle = std::min(light.innerConeAngle, light.outerConeAngle);
         drawNumber(editor, what, label, changed);
     };
-    std::array<char, 128> name{};
-    std::snprintf(name.data(), name.size(), "%s", light.name.c_str());
-    ImGui::InputText("Name", name.data(), name.size());
-    ui::mark("Name", true);
-    if (ImGui::IsItemDeactivatedAfterEdit() && name[0] != '\0') {
-        light.name = name.data();
-        editor.follow("Name", true);
-        context.endEdit();
-    }
     glm::vec3 place(light.transform[3]);
     const bool moved = ImGui::DragFloat3("Position [m]", &place.x, step, 0.0f, 0.0f, "%.3f");
     if (moved) light.transform[3] = glm::vec4(place, 1.0f);

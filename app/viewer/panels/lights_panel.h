@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include <string>
 
 #include "app/viewer/panels/panel.h"
@@ -18,12 +20,15 @@ private:
     void drawAdd(const PanelContext& context);
     void drawInspector(const PanelContext& context);
     void drawLamp(const PanelContext& context, const LightSource& source);
+    void drawName(const PanelContext& context, const LightSource& source);
     void drawAngles(const PanelContext& context, const LightSource& source);
 
     // The angles are kept as they were typed, because turn and roll of a light that shines straight down are
     // one.
     glm::vec3 angles_{0.0f}; // [degrees]
     LightKey anglesOf_;
+    std::array<char, 128> name_{}; // as it is typed
+    bool naming_ = false;          // the field was active when last drawn
 };
 
 } // namespace relume
