@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "app/edit/prepare.h"
 #include "bake/baker/baker.h"
 
@@ -15,6 +17,9 @@ struct BakeRecipe {
 /// Returns settings as a viewer's bake has them: steps of so many milliseconds, light that is asked for all
 /// the time, and layers only where the method can have one for each light.
 BakeSettings bakeable(BakeSettings typed, double batchMs);
+
+/// Tells in one line why these settings cannot be baked; "" when they can.
+std::string settingsProblem(const BakeSettings& settings);
 
 /// Tells whether a bake of the one recipe goes on as one of the other when it is edited. Layers, as they are
 /// asked for, are left out: the caller knows whether there are any.

@@ -129,9 +129,11 @@ std::unique_ptr<LoadedScene> SceneLoader::finish() {
     path_.clear();
     handOut(nullptr);
     try {
-        return loading_.get();
-    } catch (const LoadUnwanted&) {
-        return nullptr;
+        std::unique_ptr<LoadedScene> scene = loading_.get(); // it may have been there when it was dropped
+        return unwanted_ ? nullptr : std::move(scene);
+    } catch (...) {
+        if (unwanted_) return nullptr;
+        throw;
     }
 }
 

@@ -50,6 +50,7 @@ public:
     std::unique_ptr<LoadedScene> takeEarly();
     /// Lets the load under way end early: nobody wants its scene any more.
     void drop() { unwanted_ = true; }
+    bool dropped() const { return unwanted_; }
     /// Returns the files of the scene as they were when the load began. It must be ready.
     const FileSet& files() const { return files_; }
     /// Tells whether finish() would not wait.

@@ -5,7 +5,6 @@
 #include "assets/base/log.h"
 #include "assets/gltf/gltf_camera_motion.h"
 #include "assets/model/scene_limits.h"
-#include "bake/trace/make_tracer.h"
 
 #include <algorithm>
 #include <utility>
@@ -38,14 +37,16 @@ Session::Session(LiveBake& bake, const BakeRequest& request)
 
 void Session::open(const std::string& path, bool keep) {
     const Next next{path, keep, path == prepare_.path ? prepare_.choice : GltfChoice{}, false};
+    if (!keep) arrival_.ask(changes_);
     if (!loader_.loading()) return load(next);
     // One at a time: the newest request is followed when the present load has ended.
-    if (path != loader_.path()) loader_.drop();
+    if (path != loader_.path() || keep != loading_.keep) loader_.drop();
     next_ = next;
 }
 
 void Session::choose(const GltfChoice& choice) {
     const Next next{prepare_.path, false, choice, false};
+    arrival_.ask(changes_);
     if (!loader_.loading()) return load(next);
     loader_.drop();
     next_ = next;
@@ -76,7 +77,8 @@ void Session::load(const Next& next) {
 bool Session::update() {
     std::erase_if(former_, [&](const auto& scene) { return !bake_.holds(scene->prepared); });
     takeSaved();
-    if (nextSave_ && !file_.saving() && !loader_.loading()) save(*std::exchange(nextSave_, std::nullopt));
+    if (nextSave_ && !file_.saving() && (!loader_.loading() || arrival_.waits()))
+        save(*std::exchange(nextSave_, std::nullopt));
     const bool changed = finishLoading();
     pollFile();
     return changed;
@@ -85,19 +87,25 @@ bool Session::update() {
 bool Session::finishLoading() {
     if (std::unique_ptr<LoadedScene> early = loader_.takeEarly()) early_ = std::move(early);
     if (!loader_.ready()) return false;
+    if (!loading_.keep && !loader_.dropped()) {
+        const Arrival::Step step = arrival_.decide(changes_, dirty());
+        if (step == Arrival::Step::Waits) return false;
+        if (step == Arrival::Step::IsRefused) loader_.drop();
+    }
     early_.reset();
     bool changed = false;
     const std::string path = loader_.path();
     const FileSet files = loader_.files();
     loading_.sameFile = loading_.keep && path == prepare_.path && watch_.isKnown(files);
     // A file that cannot be read is not tried again until it is another one, or its writer is surely done.
-    if (path == prepare_.path && !files.paths.empty() && !loading_.hasty) watch_.know(files);
+    const bool unread = loading_.hasty || loader_.dropped();
+    if (path == prepare_.path && !files.paths.empty() && !unread) watch_.know(files);
     try {
         if (std::unique_ptr<LoadedScene> scene = loader_.finish()) {
             take(std::move(scene), path);
             watch_.know(files);
             changed = true;
-        } // else another scene is opened below
+        } // else nobody wants it any more
     } catch (const std::bad_alloc&) {
         fail(path + ": does not fit in memory: make it smaller, or close other programs",
              loading_.keep ? "" : path);
@@ -157,23 +165,21 @@ SceneEdits Session::reloaded(const PreparedScene& now, const SceneChanges& chang
 
 void Session::save(const std::string& path) {
     if (!scene_) return;
-    if (loader_.loading() && loader_.path() != prepare_.path) {
+    const bool loading = loader_.loading() && !arrival_.waits();
+    if (loading && loader_.path() != prepare_.path) {
         fail(fmt::format("{}: not saved while {} is opened: save it before, or wait", prepare_.path,
                          loader_.path()));
         return;
     }
-    if (file_.saving() || loader_.loading()) {
+    if (file_.saving() || loading) {
         nextSave_ = path;
     } else if (isNewer(watch_)) { // edits go into its nodes, which may be others now
+        arrival_.answer(false);   // no other scene comes before that
         open(prepare_.path, true);
         nextSave_ = path;
     } else {
-        saveInto(path);
+        file_.save(path.empty() ? prepare_.path : path, document_.edits);
     }
-}
-
-void Session::saveInto(const std::string& path) {
-    file_.save(path.empty() ? prepare_.path : path, document_.edits);
 }
 
 void Session::takeSaved() {
@@ -198,7 +204,8 @@ void Session::finishSaving(bool keep) {
     takeSaved();
     if (!nextSave_) return;
     if (!isNewer(watch_)) {
-        saveInto(*std::exchange(nextSave_, std::nullopt));
+        const std::string path = *std::exchange(nextSave_, std::nullopt);
+        file_.save(path.empty() ? prepare_.path : path, document_.edits);
         file_.wait();
         takeSaved();
     } else if (!keep) {
@@ -272,28 +279,6 @@ void Session::apply(const Document& next) {
         open(prepare_.path, true);
     else
         startBake(true);
-}
-
-std::string Session::problem(const BakeSettings& settings) {
-    const SolverSettings& solver = settings.solver;
-    const auto power = [](uint32_t value, uint32_t most) {
-        return value > 0 && value <= most && (value & (value - 1)) == 0;
-    };
-    if (settings.size < 8 || settings.size > Baker::kMaxSize)
-        return fmt::format("a lightmap's edge is from 8 to {} texels", Baker::kMaxSize);
-    if (solver.transport.rtrad && !isPairMethod(solver.method))
-        return fmt::format("RTRad's preset has no {} method: choose another one", methodName(solver.method));
-    if (!solver.transport.rtrad && solver.transport.distanceFactor != 1.0f)
-        return "the distance factor has a meaning in RTRad's preset only: set it to 1";
-    if (!power(solver.pairs.window, 32)) return "a window is a power of two up to 32 texels wide";
-    if (!power(solver.pairs.node, 64) || solver.pairs.node < 2)
-        return "a node is a power of two from 2 to 64 texels wide";
-    if (settings.tracer == TracerKind::Voxel && settings.voxels.ratio != 1)
-        return "a share of senders through voxels needs another tracer beside them";
-    if (!(solver.transport.reflectivity >= 0 && solver.transport.reflectivity <= 10))
-        return "the reflectivity is from 0 to 10";
-    if (solver.passes > Solver::kMaxPasses) return fmt::format("at most {} passes", Solver::kMaxPasses);
-    return "";
 }
 
 bool Session::undo() {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/live/arrival.h"
 #include "app/live/document.h"
 #include "app/live/edit_history.h"
 #include "app/live/watch/file_news.h"
@@ -43,6 +44,9 @@ public:
     bool loading() const { return loader_.loading(); }
     /// Returns what is loading, and how far that is.
     const SceneLoader& loader() const { return loader_; }
+    /// Tells whether an opened scene waits, as edits that are not saved were made since it was asked for, and
+    /// takes the answer. A save of these edits lets it come, too.
+    Arrival& arrival() { return arrival_; }
     /// Returns once what became of a scene that could not be read.
     std::optional<OpenFailure> takeOpenFailure() { return std::exchange(openFailure_, std::nullopt); }
     /// Follows loads and saves; call it once per frame. Returns whether another scene is there: scene()
@@ -92,9 +96,6 @@ public:
     /// Returns how many saves are done.
     uint64_t saves() const { return saves_; }
 
-    /// Tells in one line why these settings cannot be baked; "" when they can.
-    static std::string problem(const BakeSettings& settings);
-
     LiveBake& bake() { return bake_; }
     /// Switches watching on or off. While on, update() loads the scene anew whenever its file was written, or
     /// one that belongs to it.
@@ -123,7 +124,6 @@ private:
     bool finishLoading();
     void take(std::unique_ptr<LoadedScene> scene, const std::string& path);
     SceneEdits reloaded(const PreparedScene& now, const SceneChanges& changes);
-    void saveInto(const std::string& path);
     void takeSaved();
     void finishSaving(bool keep);
     void fail(const std::string& message, const std::string& opened = "");
@@ -136,6 +136,7 @@ private:
     std::vector<std::unique_ptr<LoadedScene>> former_; // the bake thread may still read them
     SceneLoader loader_;
     Loading loading_;
+    Arrival arrival_;          // of the scene that was opened last
     std::optional<Next> next_; // the newest scene that was asked for while one was loading
     bool kept_ = false;
     std::vector<std::string> reloadNotes_;

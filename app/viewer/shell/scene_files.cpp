@@ -223,6 +223,32 @@ void SceneFiles::leave(const Departure::Goal& goal) {
     desc_.feedback.pacer().input();
 }
 
+// Asks before an opened scene takes the place of one that was edited while it was read.
+void SceneFiles::followArrival() {
+    Session& session = desc_.session;
+    if (!session.arrival().waits() || desc_.question.isOpen() || session.saving()) return;
+    const std::string text = fmt::format("{} is there, and {} has edits since then that are not saved.",
+                                         fileName(session.loader().path()), fileName(session.path()));
+    const auto stay = [this] {
+        desc_.session.arrival().answer(false);
+        opening_.giveUp();
+    };
+    const auto saveFirst = [this, stay] {
+        if (isForeign(path())) { // its new name is asked for first
+            stay();
+            return askToSaveAs();
+        }
+        save(""); // which lets it come
+        if (!desc_.session.arrival().waits()) opening_.giveUp();
+    };
+    desc_.feedback.tell("ask", text);
+    desc_.question.ask(text,
+                       {{"Save and open (Enter)", GLFW_KEY_ENTER, saveFirst},
+                        {"Do not save (D)", GLFW_KEY_D, [this] { desc_.session.arrival().answer(true); }},
+                        {"Cancel (Esc)", GLFW_KEY_ESCAPE, stay}});
+    desc_.feedback.pacer().input();
+}
+
 void SceneFiles::go(const std::optional<Departure::Goal>& goal) {
     if (!goal) return;
     if (!goal->scene) return desc_.window.close();
@@ -292,6 +318,7 @@ void SceneFiles::followOpening() {
 void SceneFiles::follow() {
     followOpening();
     followSaves();
+    followArrival();
     go(departure_.followSave(desc_.session.saving(), desc_.session.dirty()));
     followTitle();
 }

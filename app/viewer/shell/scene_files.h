@@ -68,6 +68,7 @@ private:
     void write(const std::vector<std::string>& paths, BakeOrders::EngineExport wanted);
     void leave(const Departure::Goal& goal);
     void go(const std::optional<Departure::Goal>& goal);
+    void followArrival();
     void followOpening();
     void followSaves();
     void followTitle();

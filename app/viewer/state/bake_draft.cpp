@@ -1,5 +1,7 @@
 #include "app/viewer/state/bake_draft.h"
 
+#include "app/live/bake_recipe.h"
+
 namespace relume {
 
 void BakeDraft::follow(const Document& document, uint64_t scene, bool held) {
@@ -12,7 +14,7 @@ void BakeDraft::follow(const Document& document, uint64_t scene, bool held) {
 }
 
 std::optional<Document> BakeDraft::settle(const Document& document) {
-    problem_ = Session::problem(bake);
+    problem_ = settingsProblem(bake);
     if (waits()) return std::nullopt;
     Document next = document;
     next.bake = bake;

@@ -46,6 +46,8 @@ public:
     void fail(OpenFailure failure);
     /// Says that another scene came.
     void sceneCame();
+    /// Says that the file is not opened after all.
+    void giveUp() { path_.clear(); }
     /// Says that the user wants the start page, over the scene if there is one.
     void wantStart();
     /// Puts away what is in the middle, as far as something is left behind it. Returns whether something was.

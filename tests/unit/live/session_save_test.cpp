@@ -262,6 +262,41 @@ TEST_F(SessionSaveTest, WhatAnotherSceneOvertakesIsTold) {
     EXPECT_EQ(session_.saves(), 0u);
 }
 
+TEST_F(SessionSaveTest, EditsMadeWhileAnotherSceneLoadsAreAskedAbout) {
+    open();
+    const std::string other = kScenes + "cornell_geom.glb";
+    const auto openAndEdit = [&] {
+        session_.open(other);
+        addLamp("Late");
+        ASSERT_TRUE(until([&] { return session_.arrival().waits(); }));
+        EXPECT_EQ(session_.path(), file());
+    };
+    openAndEdit();
+    session_.arrival().answer(false);
+    ASSERT_TRUE(untilLoaded());
+    EXPECT_EQ(session_.path(), file());
+    EXPECT_EQ(session_.document().edits.lights.size(), 1u);
+    EXPECT_FALSE(session_.takeOpenFailure());
+    openAndEdit();
+    session_.save();
+    ASSERT_TRUE(until([&] { return session_.path() == other; })) << "nothing is lost any more";
+    EXPECT_EQ(loadGltf(file()).lights.size(), 2u);
+    EXPECT_EQ(session_.lastError(), "");
+    open();
+    openAndEdit();
+    session_.arrival().answer(true);
+    ASSERT_TRUE(until([&] { return session_.path() == other; }));
+    EXPECT_EQ(loadGltf(file()).lights.size(), 2u);
+}
+
+TEST_F(SessionSaveTest, EditsBeforeAnotherSceneIsOpenedAreTheOpenersBusiness) {
+    open();
+    addLamp("Early");
+    session_.open(kScenes + "cornell_geom.glb");
+    ASSERT_TRUE(until([&] { return session_.path() != file(); }));
+    EXPECT_FALSE(session_.arrival().waits());
+}
+
 TEST_F(SessionSaveTest, AFailureIsToldAndTheFileStays) {
     open();
     addLamp("A");
