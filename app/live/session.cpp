@@ -117,9 +117,10 @@ bool Session::finishLoading() {
     }
     if (const std::optional<Next> next = std::exchange(next_, std::nullopt))
         load(*next);
-    else if (changed && scene_->size != document_.bake.size)
+    else if (const bool resized = scene_ && scene_->size != document_.bake.size;
+             resized && (changed || !loading_.keep))
         open(prepare_.path, true); // the size was edited meanwhile
-    else if (!changed && scene_ && scene_->size != document_.bake.size) {
+    else if (resized) {
         scene_->size = document_.bake.size; // its file is gone: the atlas it has must do
         startBake(true);
     }
@@ -274,8 +275,9 @@ void Session::apply(const Document& next) {
     }
     document_ = next;
     ++changes_;
-    // Charts are packed for a size: another size needs another atlas.
-    if (resized && scene_)
+    // Charts are packed for a size: another size needs another atlas, unless another scene is on its way.
+    const bool another = (loader_.loading() && !loading_.keep) || (next_ && !next_->keep);
+    if (resized && scene_ && !another)
         open(prepare_.path, true);
     else
         startBake(true);

@@ -273,6 +273,30 @@ TEST_F(SessionTest, AnotherSizeLoadsTheSceneAnew) {
     EXPECT_EQ(session_.undoName(), "Emission");
 }
 
+TEST_F(SessionTest, ASizeThatIsEditedWhileAnotherSceneLoadsLeavesThatOnItsWay) {
+    open();
+    const auto resize = [&](uint32_t size) {
+        Document next = session_.document();
+        next.bake.size = size;
+        session_.edit("Size", next);
+        session_.endEdit();
+    };
+    const std::string other = kScenes + "cornell_geom.glb";
+    session_.open(other);
+    resize(2 * kSize);
+    ASSERT_TRUE(untilLoaded());
+    EXPECT_EQ(session_.path(), other);
+    EXPECT_EQ(session_.scene()->size, 2 * kSize);
+    // Where the other one cannot be read, the present one gets its size.
+    std::ofstream(folder_.path("bad.glb")) << "this is no scene";
+    session_.open(folder_.path("bad.glb"));
+    resize(kSize);
+    ASSERT_TRUE(untilLoaded());
+    EXPECT_EQ(session_.path(), other);
+    EXPECT_TRUE(session_.takeOpenFailure());
+    EXPECT_EQ(session_.scene()->size, kSize);
+}
+
 TEST_F(SessionTest, ASizeThatIsDraggedEndsWithTheLast) {
     open();
     for (const uint32_t size : {80u, 96u, 112u}) {
