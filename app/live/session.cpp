@@ -33,6 +33,7 @@ Session::Session(LiveBake& bake, const BakeRequest& request)
     : bake_(bake), prepare_(request.prepare), news_([&bake] { bake.wake(); }) {
     document_.bake = request.bake;
     document_.lightmap = request.lightmap;
+    prepare_.size = request.bake.size; // from which sizes are found
 }
 
 void Session::open(const std::string& path, bool keep) {
@@ -59,11 +60,13 @@ void Session::load(const Next& next) {
     PrepareDesc desc = prepare_;
     desc.path = path;
     desc.choice = choice;
-    desc.size = document_.bake.size;
     if (keep) desc.leastDensity = 0; // its size stays
-    desc.stride = kSizeStride;       // the next power of two may take four times as long
-    desc.fitting = [&bake = bake_, settings = document_.bake](const Scene& scene, LightmapPages pages,
-                                                              uint32_t edge) {
+    // A size that was found for the scene before is none that anybody asked for.
+    if (desc.leastDensity <= 0) desc.size = document_.bake.size;
+    desc.stride = kSizeStride; // the next power of two may take four times as long
+    BakeSettings least = document_.bake;
+    least.size = desc.size;
+    desc.fitting = [&bake = bake_, settings = least](const Scene& scene, LightmapPages pages, uint32_t edge) {
         const std::optional<BakeRoom> room = bake.room();
         return room ? fittingSize(settings, extentOf(scene, pages), *room, settings.size, edge)
                     : settings.size;
