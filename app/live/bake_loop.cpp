@@ -187,18 +187,16 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     else
         bake_.make(*device_, start);
     const bool glance = bake_.isGlance();
-    if (glance) showGlance(start);
+    if (glance) showGlance();
     beginMaps(start.keepLight ? KeptLight::Whole : glance ? KeptLight::Glance : KeptLight::None);
-    bake_.mix(start.mix);
     letGo();
     ready();
 }
 
 // Shows the first light of a bake that is not prepared to its end, and prepares the rest of it. onPhase()
 // shows a map that has to wait for its slot.
-void BakeLoop::showGlance(const BakeOrders::Start& start) {
+void BakeLoop::showGlance() {
     beginMaps(KeptLight::None);
-    bake_.mix(start.mix);
     try {
         const Clock::time_point begun = Clock::now();
         while (!allLit(bake_.layers()->layers()) && secondsSince(begun) < kGlanceSeconds) {

@@ -32,7 +32,7 @@ private:
     bool takeOrders(BakeOrders& orders);
     void obey(BakeOrders& orders);
     void prepare(const BakeOrders::Start& start);
-    void showGlance(const BakeOrders::Start& start);
+    void showGlance();
     bool publishGlance();
     void goOnEdited(const BakeOrders::Start& start, uint64_t movesBefore);
     uint64_t texelMoves() const;

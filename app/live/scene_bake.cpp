@@ -22,7 +22,9 @@ Applied SceneBake::edit(const Start& start) {
                        .mix = start.mix,
                        .atlas = &start.scene->atlas,
                        .repainted = start.paint != paint_ ? &start.scene->scene : nullptr});
-    if (applied == Applied::Now) paint_ = start.paint;
+    if (applied != Applied::Now) return applied;
+    paint_ = start.paint;
+    mix_ = start.mix;
     return applied;
 }
 
@@ -40,6 +42,7 @@ void SceneBake::takeUp(const Start& start, double batchMs) {
     recipe_.settings = bakeable(start.settings, batchMs);
     recipe_.rings = start.rings;
     wantsLayers_ = start.settings.solver.layers.on;
+    mix_ = start.mix;
 }
 
 void SceneBake::make(const vk::Device& device, const Start& start) {
@@ -88,6 +91,7 @@ void SceneBake::makeBaker(const vk::Device& device, WorldMesh mesh, Preparation 
     baker_ = std::make_unique<Baker>(device, scene_, BakeSurfaces(std::move(mesh), former), settings(),
                                      Baker::PhaseHook(), preparation);
     former_.reset();
+    weighLights();
     if (isGlance()) return;
     due_ = false;
     tellPatches();
@@ -100,12 +104,14 @@ void SceneBake::tellPatches() const {
 
 void SceneBake::makeSolver() {
     baker_->resetSolver(settings().solver);
+    weighLights();
     due_ = false;
 }
 
-void SceneBake::mix(const LightMix& mix) {
+// A solver that was just made knows nothing of mutes and solos.
+void SceneBake::weighLights() {
     if (!layers()) return;
-    const Applied applied = baker_->apply({.scene = editsOf(scene_), .mix = mix});
+    const Applied applied = baker_->apply({.scene = editsOf(scene_), .mix = mix_});
     ASSERT(applied == Applied::Now);
 }
 

@@ -52,8 +52,6 @@ public:
     void makeAgain(const vk::Device& device);
     /// Makes another solver, which starts from no light.
     void makeSolver();
-    /// Weighs the lights of a bake that was just made.
-    void mix(const LightMix& mix);
     /// Gives up the bake.
     void end();
 
@@ -61,11 +59,13 @@ private:
     void keepFormer(const vk::Device& device);
     void makeBaker(const vk::Device& device, WorldMesh mesh, Preparation preparation);
     void tellPatches() const;
+    void weighLights();
 
     Scene scene_;                      // with the edits; the baker changes it
     LightmapAtlas atlas_;              // of the scene
     uint64_t paint_ = 0;               // as the start had it
     BakeRecipe recipe_;                // surfaces: 0 where there is no bake, or it was given up
+    LightMix mix_;                     // of its lights, which each solver is told
     bool due_ = false;                 // the recipe was taken up, and nothing was made by it yet
     bool wantsLayers_ = true;          // they are asked for, even if the settings cannot have them
     bool goesOn_ = false;              // with layers of the bake before

@@ -65,6 +65,34 @@ TEST_F(LiveBakeTest, AnotherStartEndsAFirstGlance) {
     EXPECT_TRUE(bake_.status().layered);
 }
 
+// A bake that begins again has the mix that it had.
+TEST_F(LiveBakeTest, AMutedLightStaysDarkWhereTheBakeBeginsAgain) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    edits_.lights.push_back({.name = "Bulb"});
+    edits_.lights.back().transform[3] = glm::vec4(0.0f, 1.4f, 0.4f, 1.0f);
+    LightMix mix;
+    mix.muted = {lightSources(scene_.scene).at(0).key}; // the bulb alone is left
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    const double all = screen_.mean();
+    newest_ =
+        bake_.start({.scene = &scene_, .edits = edits_, .mix = mix, .settings = settings, .keepLight = true});
+    ASSERT_TRUE(untilShown());
+    const double muted = screen_.mean();
+    ASSERT_LT(muted, 0.75 * all);
+    for (const bool shaders : {false, true}) {
+        const uint64_t beginnings = bake_.status().beginnings;
+        if (shaders)
+            bake_.reloadShaders();
+        else
+            bake_.reset();
+        ASSERT_TRUE(until([&] { return bake_.status().beginnings > beginnings; }));
+        ASSERT_TRUE(untilShown());
+        EXPECT_NEAR(screen_.mean(), muted, 0.05 * muted) << shaders;
+    }
+}
+
 TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
     BakeSettings settings = quickSettings();
     settings.solver.layers.on = true;
