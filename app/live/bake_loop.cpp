@@ -154,7 +154,7 @@ void BakeLoop::obey(BakeOrders& orders) {
     if (orders.inspect) inspect_ = *orders.inspect;
     if (orders.probes) maps_->setProbes(std::move(*orders.probes));
     if (orders.balls) balls_->ask(std::move(*orders.balls));
-    if (orders.start) prepare(*orders.start);
+    if (orders.start) prepare(std::move(*orders.start));
     if (!bake_.baker()) return;
     if (orders.reload) reloadShaders();
     if (orders.reset) reset();
@@ -164,16 +164,22 @@ void BakeLoop::obey(BakeOrders& orders) {
     inspectMore(orders);
 }
 
-// Follows a start. Light of the same scene stays until there is better, that of another one is of no use.
-void BakeLoop::prepare(const BakeOrders::Start& start) {
+// Follows a start. Light of the same scene stays until there is better, that of another one is of no use: so
+// it is for an edit of a scene whose first preparation it ends, too.
+void BakeLoop::prepare(BakeOrders::Start start) {
+    if (unlit_) start.keepLight = false;
+    unlit_ = !start.keepLight;
     waiting_.reset();
     const uint64_t moves = texelMoves();
     const Applied applied = bake_.edit(start);
     if (applied == Applied::Later) {
-        waiting_ = start;
+        waiting_ = std::move(start);
         return;
     }
-    if (applied == Applied::Now) return goOnEdited(start, moves);
+    if (applied == Applied::Now) {
+        unlit_ = false;
+        return goOnEdited(start, moves);
+    }
     const bool solverOnly = bake_.keepsPatches(start);
     bake_.takeUp(start, desc_.batchMs);
     status_.bake = start.number;
@@ -189,6 +195,7 @@ void BakeLoop::prepare(const BakeOrders::Start& start) {
     const bool glance = bake_.isGlance();
     if (glance) showGlance();
     beginMaps(start.keepLight ? KeptLight::Whole : glance ? KeptLight::Glance : KeptLight::None);
+    unlit_ = false;
     letGo();
     ready();
 }

@@ -31,7 +31,7 @@ private:
     void compileAhead();
     bool takeOrders(BakeOrders& orders);
     void obey(BakeOrders& orders);
-    void prepare(const BakeOrders::Start& start);
+    void prepare(BakeOrders::Start start);
     void showGlance();
     bool publishGlance();
     void goOnEdited(const BakeOrders::Start& start, uint64_t movesBefore);
@@ -68,7 +68,8 @@ private:
     std::optional<LightBalls> balls_;
     SceneBake bake_;
     std::optional<BakeOrders::Start> waiting_; // an edit that comes too early
-    std::vector<BakeOrders::Export> exports_;  // not written yet, as those of the next line
+    bool unlit_ = false; // a start that keeps no light was taken up, and no bake was made by it yet
+    std::vector<BakeOrders::Export> exports_; // not written yet, as those of the next line
     std::vector<BakeOrders::EngineExport> engineExports_;
     BakeStatus status_; // report() copies it to the desk
     BakeOrders::Run run_ = BakeOrders::Run::Resume;

@@ -93,6 +93,22 @@ TEST_F(LiveBakeTest, AMutedLightStaysDarkWhereTheBakeBeginsAgain) {
     }
 }
 
+// A user edits a scene as soon as it is seen, while it is prepared.
+TEST_F(LiveBakeTest, AnEditOfTheFirstPreparationHidesNoFirstLight) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    start(settings, false);
+    ASSERT_TRUE(until([&] { return bake_.status().phase != BakeStatus::Phase::Idle; }));
+    edits_.lights.push_back({.name = "Bulb"});
+    start(settings);
+    const bool early = bake_.status().phase == BakeStatus::Phase::Preparing;
+    ASSERT_TRUE(until([&] { return screen_.map().has_value(); }));
+    if (early) {
+        EXPECT_FALSE(screen_.map()->complete) << "direct light comes before it has bounced";
+    }
+    ASSERT_TRUE(untilShown());
+}
+
 TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
     BakeSettings settings = quickSettings();
     settings.solver.layers.on = true;
