@@ -39,7 +39,7 @@ LightMapStep LightMaps::decide(const LiveLight& live, bool otherOnScreen) const 
                            .newer = live.version != drawnVersion_ || (current_ && !drawnCurrent_),
                            .edited = edited_,
                            .bounced = live.bounced,
-                           .kept = kept_,
+                           .kept = next_.publisher ? kept_ : KeptLight::None, // its own light is shown else
                            .drawn = light_.publisher != nullptr,
                            .otherOnScreen = otherOnScreen});
 }

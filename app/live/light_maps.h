@@ -40,13 +40,13 @@ public:
     MapSource& draw(LightMapStep step, const LiveLight& live);
 
 private:
-    MapSource light_, next_; // next_ takes light_'s place once there is a solution
-    KeptLight kept_ = KeptLight::None;
-    std::vector<ChunkRange> changed_; // since light_'s or next_'s last update
-    uint64_t drawnVersion_ = 0;       // of the solver's light that light_ holds; 0: none of this bake
-    bool current_ = false;            // the solver's light is of the newest edit
-    bool drawnCurrent_ = false;       // light_ was, when it was drawn
-    bool edited_ = false;             // since the newest map
+    MapSource light_, next_;           // next_ takes light_'s place once there is a solution
+    KeptLight kept_ = KeptLight::None; // while next_ waits
+    std::vector<ChunkRange> changed_;  // since light_'s or next_'s last update
+    uint64_t drawnVersion_ = 0;        // of the solver's light that light_ holds; 0: none of this bake
+    bool current_ = false;             // the solver's light is of the newest edit
+    bool drawnCurrent_ = false;        // light_ was, when it was drawn
+    bool edited_ = false;              // since the newest map
 };
 
 } // namespace relume

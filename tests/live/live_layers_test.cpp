@@ -93,6 +93,28 @@ TEST_F(LiveBakeTest, AMutedLightStaysDarkWhereTheBakeBeginsAgain) {
     }
 }
 
+// Without a light nothing bounces, and what is shown may be of the same bake.
+TEST_F(LiveBakeTest, TheOnlyLightGoesDarkWhereItIsMutedOrTakenAway) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    ASSERT_GT(screen_.mean(), 0);
+    const auto isDark = [&] { return screen_.map()->bake == newest_ && screen_.mean() == 0; };
+    LightMix mix;
+    for (const LightSource& source : lightSources(scene_.scene))
+        mix.muted.push_back(source.key);
+    newest_ =
+        bake_.start({.scene = &scene_, .edits = edits_, .mix = mix, .settings = settings, .keepLight = true});
+    EXPECT_TRUE(until(isDark)) << screen_.mean();
+    start(settings);
+    ASSERT_TRUE(until([&] { return screen_.map()->bake == newest_ && screen_.mean() > 0; }));
+    for (Material& material : edits_.materials)
+        material.emission = glm::vec3(0.0f);
+    start(settings);
+    EXPECT_TRUE(until(isDark)) << screen_.mean();
+}
+
 // A user edits a scene as soon as it is seen, while it is prepared.
 TEST_F(LiveBakeTest, AnEditOfTheFirstPreparationHidesNoFirstLight) {
     BakeSettings settings = quickSettings();
