@@ -37,6 +37,11 @@ void SkyPictures::begin(Wish wish) {
     });
 }
 
+void SkyPictures::forget() {
+    next_.reset();
+    reading_.clear();
+}
+
 std::optional<SkyPictures::Result> SkyPictures::poll() {
     if (!result_.valid() || result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
         return std::nullopt;
@@ -45,7 +50,7 @@ std::optional<SkyPictures::Result> SkyPictures::poll() {
         begin(*std::exchange(next_, std::nullopt));
         return std::nullopt;
     }
-    reading_.clear();
+    if (std::exchange(reading_, {}).empty()) return std::nullopt;
     return result;
 }
 

@@ -19,6 +19,8 @@ public:
     ~SkyPictures();
     /// Begins to read a picture. The newest request counts.
     void read(const std::string& file, bool chosen);
+    /// Forgets whatever is being read or is next: another scene came.
+    void forget();
     /// Returns the file that is being read or is next; "": none.
     const std::string& reading() const { return reading_; }
     /// Returns the result of a read() once, as soon as it is there.
@@ -33,7 +35,7 @@ private:
 
     std::future<Result> result_;
     std::optional<Wish> next_; // instead of what is being read
-    std::string reading_;
+    std::string reading_;      // "": nobody wants what is read
 };
 
 } // namespace relume

@@ -29,6 +29,11 @@ void SkyKeys::clear() {
     editing_.editOnce(change->name, change->next);
 }
 
+void SkyKeys::sceneCame(bool kept) {
+    bad_.clear();
+    if (!kept) pictures_.forget();
+}
+
 void SkyKeys::follow() {
     if (const std::optional<SkyPictures::Result> result = pictures_.poll()) take(*result);
     const LoadedScene* scene = session_.scene();

@@ -20,8 +20,9 @@ public:
     /// Asks for a picture. The dialog begins in the folder `begin`, which ends in a slash.
     void choose(FileDialog& dialog, const std::string& begin);
     void clear();
-    /// Says that another scene came.
-    void sceneCame() { bad_.clear(); }
+    /// Says that another scene came, or the same one, read anew: a picture that was chosen for the former one
+    /// is none of its sky.
+    void sceneCame(bool kept);
     void follow();
     bool reading() const { return !pictures_.reading().empty(); }
 

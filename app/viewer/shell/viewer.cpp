@@ -185,7 +185,7 @@ void Viewer::takeScene() {
     lights_.sceneCame();
     mover_.sceneCame();
     previews_.sceneCame();
-    skyKeys_.sceneCame();
+    skyKeys_.sceneCame(session_.sceneWasKept());
     progress_.sceneCame(feedback_.now());
     comparison_.sceneCame();
     if (!session_.sceneWasKept()) {
