@@ -6,7 +6,7 @@ Timer::Scope::Scope(Timer& timer, const char* name)
     : timer_(timer), start_(std::chrono::steady_clock::now()) {
     glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name);
     Frame& frame = timer.frames_[timer.current_];
-    measured_ = !frame.pending;
+    measured_ = !frame.pending && frame.passes.size() < kMostPasses;
     if (!measured_) return;
     pass_ = frame.passes.size();
     frame.passes.push_back({name, 0.0, 0.0});

@@ -17,6 +17,9 @@ inline void deleteQuery(GLuint name) {
 /// frames later; nothing ever waits for them.
 class Timer {
 public:
+    /// A frame measures no more passes than this, so that one that nobody ends costs nothing.
+    static constexpr size_t kMostPasses = 256;
+
     struct Pass {
         std::string name;
         double gpuMs = 0, cpuMs = 0;

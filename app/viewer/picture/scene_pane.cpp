@@ -213,6 +213,7 @@ void ScenePane::show(glm::uvec2 corner) const {
 std::vector<gl::Timer::Pass> ScenePane::endFrame() {
     if (!renderer_) return {};
     renderer_->timer().endFrame();
+    if (referenceRenderer_) referenceRenderer_->timer().endFrame();
     return renderer_->timer().passes();
 }
 

@@ -132,6 +132,17 @@ TEST(Gl, TimersKnowPassesFramesLater) {
     EXPECT_GE(timer.passes()[0].cpuMs, timer.passes()[1].cpuMs);
 }
 
+TEST(Gl, TimersOfFramesThatNobodyEndsStaySmall) {
+    testContext();
+    gl::Timer timer;
+    for (size_t i = 0; i < 2 * gl::Timer::kMostPasses; ++i)
+        const gl::Timer::Scope pass(timer, "pass");
+    timer.endFrame();
+    glFinish();
+    timer.endFrame();
+    EXPECT_EQ(timer.passes().size(), gl::Timer::kMostPasses);
+}
+
 TEST(Gl, KnowsWhichDevicesItCanShareWith) {
     testContext();
     const gl::GlSharing sharing = gl::querySharing();
