@@ -55,6 +55,23 @@ TEST_F(ViewerObjects, AreDraggedNudgedHiddenAndUndone) {
     quit(*viewer);
 }
 
+// The key is let go of while the gizmo is held.
+TEST_F(ViewerObjects, AFlightEndsWhileTheGizmoIsHeld) {
+    auto viewer = openWithBox();
+    const Place up = placeOf(*viewer, "Gizmo/Y");
+    viewer->mark();
+    viewer->moveTo(up.first, up.second);
+    viewer->xdotool({"keydown", "w", "mousedown", "1"});
+    EXPECT_TRUE(viewer->says("action: fly")) << viewer->output();
+    viewer->moveTo(up.first, up.second - 30);
+    EXPECT_TRUE(viewer->says("edit: Move Tall box")) << "it was to be held: " << viewer->output();
+    viewer->xdotool({"keyup", "w", "mouseup", "1"});
+    viewer->mark();
+    viewer->keys({"i"});
+    EXPECT_TRUE(viewer->shows("action: Light icons", 60)) << "the camera stands: " << viewer->output();
+    quit(*viewer);
+}
+
 // In a view without light nothing but the geometry can differ.
 TEST_F(ViewerObjects, AreDrawnWhereTheyAreBeforeTheBakeFollows) {
     auto viewer = openWithBox();

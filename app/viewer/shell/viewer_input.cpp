@@ -58,7 +58,10 @@ void Viewer::onKey(const WindowEvent& event) {
         return;
     }
     input_.followModifiers(event);
-    if (mover_.held()) return mover_.takeKey(event, input_.cursor(), input_.control());
+    if (mover_.held()) {
+        if (!event.pressed) input_.takeFlightKey(event, false); // a flight may end meanwhile
+        return mover_.takeKey(event, input_.cursor(), input_.control());
+    }
     const bool typing = gui_.wantsKeyboard();
     if (input_.takeFlightKey(event, typing)) {
         if (!event.repeated) feedback_.tell("action", "fly");
