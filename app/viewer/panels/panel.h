@@ -6,7 +6,6 @@
 #include "app/viewer/edits/light_edits.h"
 #include "app/viewer/panels/item_log.h"
 #include "app/viewer/picture/light_previews.h"
-#include "app/viewer/state/camera_control.h"
 #include "app/viewer/state/log_buffer.h"
 #include "app/viewer/state/preferences.h"
 #include "app/viewer/state/shortcuts.h"
@@ -21,7 +20,6 @@ struct PanelContext {
     Session& session;
     const BakeStatus& status;
     ViewState& view;
-    CameraControl& camera;
     Preferences& preferences;
     const FrameFigures& figures;
     const LogBuffer& log;
@@ -33,7 +31,8 @@ struct PanelContext {
     double& budgetMs;        // how long a batch should take while the camera is still
     bool recording = false;
     std::function<void(Action, int)> perform;
-    std::function<void()> sceneChanged; // the picture of the scene is to be drawn anew
+    std::function<void(const ViewCamera&)> seeFrom; // from now on
+    std::function<void()> sceneChanged;             // the picture of the scene is to be drawn anew
     std::function<void(const std::string&, const Document&)> edit; // Session::edit, told to the log
     std::function<void()> endEdit;
     std::function<void(const std::string&)> open;   // a scene

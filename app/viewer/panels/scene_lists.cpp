@@ -15,10 +15,8 @@ void drawCameras(const PanelContext& context, const LoadedScene& scene) {
     const std::vector<Camera>& cameras = scene.prepared.scene.cameras;
     for (size_t i = 0; i < cameras.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
-        if (ui::selectable((nameOf(cameras[i].name, "camera", i) + "###camera").c_str())) {
-            context.camera.set(cameraOfFile(cameras[i], scene.geometry.bounds));
-            context.sceneChanged();
-        }
+        if (ui::selectable((nameOf(cameras[i].name, "camera", i) + "###camera").c_str()))
+            context.seeFrom(cameraOfFile(cameras[i], scene.geometry.bounds));
         ImGui::PopID();
     }
     std::error_code code;
@@ -36,10 +34,7 @@ void drawCameras(const PanelContext& context, const LoadedScene& scene) {
             }
             ui::tip("Forget this bookmark");
             ImGui::SameLine();
-            if (ui::selectable((marks[i].name + "###bookmark").c_str())) {
-                context.camera.set(marks[i].camera);
-                context.sceneChanged();
-            }
+            if (ui::selectable((marks[i].name + "###bookmark").c_str())) context.seeFrom(marks[i].camera);
             ImGui::PopID();
         }
     }

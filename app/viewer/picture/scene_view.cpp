@@ -161,6 +161,11 @@ void SceneView::frameAll() {
     cameraMoved();
 }
 
+void SceneView::seeFrom(const ViewCamera& camera) {
+    camera_.set(camera);
+    cameraMoved();
+}
+
 void SceneView::cameraMoved() {
     moved_ = feedback_.now();
     feedback_.sceneChanged();

@@ -75,6 +75,7 @@ public:
     /// Flies on to this time [s].
     void fly(const CameraControl::Flight& flight, double time);
     void frameAll();
+    void seeFrom(const ViewCamera& camera);
     void cameraMoved();
     /// Returns the time [s] at which the camera moved last.
     double movedAt() const { return moved_; }
