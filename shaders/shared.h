@@ -423,7 +423,7 @@ struct CitMaterial {
     vec3 emission; // [cd/m^2]
     float metallic;
     float roughness;
-    int baseTexture;   // into the texture array, -1: none
+    int baseTexture; // into the texture array, -1: none
     int emissionTexture;
     int metallicTexture;
 };

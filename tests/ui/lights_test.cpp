@@ -166,8 +166,8 @@ TEST_F(ViewerLights, KeepANameThatAClickElsewhereEnds) {
         const Place field = placeOf(*viewer, "Lights/Selected/Name");
         viewer->click(field.first, field.second);
         viewer->settle();
-        viewer->keys({"ctrl+a", "BackSpace"});
-        viewer->settle();
+        viewer->press("ctrl+a");
+        viewer->press("BackSpace");
         viewer->type(text);
         viewer->settle();
         const Place strength = placeOf(*viewer, "Lights/Selected/Intensity");

@@ -158,6 +158,13 @@ void ViewerProcess::keys(const std::vector<std::string>& names) {
         xdotool({"key", "--delay", "40", name});
 }
 
+void ViewerProcess::press(const std::string& name) {
+    xdotool({"keydown", name});
+    settle();
+    xdotool({"keyup", name});
+    settle();
+}
+
 void ViewerProcess::type(const std::string& text) {
     xdotool({"type", "--delay", "20", text});
 }

@@ -46,6 +46,8 @@ public:
     unsigned long windowId() const { return window_; }
     /// Sends keys to the window, by xdotool's names: {"ctrl+z"}.
     void keys(const std::vector<std::string>& names);
+    /// Presses a key, or keys joined by +, until a frame has seen it: quick ones may come and go between two.
+    void press(const std::string& name);
     void type(const std::string& text);
     void moveTo(int x, int y); // within the window [pixels]
     void click(int x, int y, int button = 1);

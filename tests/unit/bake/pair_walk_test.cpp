@@ -201,12 +201,17 @@ TEST(FreshRows, AViewerGetsEveryRowOnceFromWhereItsNewestLightIs) {
     EXPECT_EQ(rows.take().fromLast, (std::vector<ChunkRange>{{0, kChunks}}));
 }
 
-TEST(PairLight, TellsWhatAGeometricSeriesStillBrings) {
+PatchSet oneChunk() {
     PatchSet patches;
     patches.count = shader::kChunk;
     patches.scene.patches.resize(patches.count);
     for (shader::Patch& patch : patches.scene.patches)
         patch.flags = shader::kPatchSends;
+    return patches;
+}
+
+TEST(PairLight, TellsWhatAGeometricSeriesStillBrings) {
+    const PatchSet patches = oneChunk();
     WorkerPool pool(2);
     PairLight light(patches, std::vector<glm::vec4>(patches.count, glm::vec4(0.0f)), true);
     const auto bounce = [&](float value) {
@@ -236,11 +241,7 @@ TEST(PairLight, TellsWhatAGeometricSeriesStillBrings) {
 // Light that grows for ever is an error of its own, told long before it is too large for a float. RTRad's
 // preset goes on as RTRad does.
 TEST(PairLight, LightThatGrowsWithoutEndIsAnError) {
-    PatchSet patches;
-    patches.count = shader::kChunk;
-    patches.scene.patches.resize(patches.count);
-    for (shader::Patch& patch : patches.scene.patches)
-        patch.flags = shader::kPatchSends;
+    const PatchSet patches = oneChunk();
     WorkerPool pool(2);
     const auto passesUntilError = [&](bool dark, float growth) {
         PairLight light(patches, std::vector<glm::vec4>(patches.count, glm::vec4(0.0f)), dark);
