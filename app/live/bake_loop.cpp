@@ -1,16 +1,17 @@
 #include "app/live/bake_loop.h"
 
-#include "app/live/hearer.h"
 #include "app/live/lightmap_export.h"
 #include "app/live/seen_chunks.h"
 #include "app/live/warm_up.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
+#include "assets/base/watch.h"
 #include "shaders/shader_library.h"
 
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <functional>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -32,6 +33,18 @@ struct Cancelled {};
 // The phases stand in the order in which a baker tells them, for the progress bar.
 constexpr std::array<std::string_view, 6> kPhases = {"cit",      "patches", "tracer",
                                                      "validity", "voxels",  "solver set-up"};
+
+// Passes on to a function how a preparation stands.
+class Hearer final : public Watch {
+public:
+    using Hear = std::function<void(const char* phase, double done)>;
+    explicit Hearer(Hear hear) : hear_(std::move(hear)), scope_(*this) {}
+    void hear(const char* phase, double done) override { hear_(phase, done); }
+
+private:
+    Hear hear_;
+    WatchScope scope_;
+};
 
 // Lets pictures come first where the CPU bakes: threads inherit the low priority of this one.
 void yieldToOthers() {

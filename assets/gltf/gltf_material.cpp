@@ -50,7 +50,7 @@ private:
     double transmissionOf(const json& source, const Material& material);
 
     Build& build_;
-    // Of the file -> of the scene, or one of the constants above.
+    // These lead from the file's numbers to the scene's, or to one of the constants above.
     std::vector<int> textureIndex_, imageIndex_, keptIndex_;
 };
 

@@ -61,7 +61,7 @@ void overPlaces(const WorldMesh& mesh, uint32_t triangle, uint32_t size, const W
         }
 }
 
-// What the places in one lightmap texel have found so far.
+// Holds what the places in one lightmap texel have found so far.
 struct SolidTexel {
     float places = 0.0f, solid = 0.0f; // those in the surface, and those of them that are solid, weighed
     SurfaceColour colour;              // sum over these

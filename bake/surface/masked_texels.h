@@ -27,7 +27,7 @@ float solidShare(const SurfaceReader& reader, const WorldMesh& mesh, uint32_t tr
 /// Looks through the texels of masked triangles, which the CIT pass draws as if they had no holes. A texel in
 /// which nothing is solid becomes empty. All others get the colours of what is solid there and, as
 /// group.solid, its share; where their own point lies in a hole it moves to the solid place nearest to it.
-/// What comes out does not depend on the number of threads.
+/// The result does not depend on the number of threads.
 void findSolidTexels(TextureGroup& group, const Scene& scene, const WorldMesh& mesh, WorkerPool& pool);
 
 } // namespace relume

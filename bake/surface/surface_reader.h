@@ -11,7 +11,7 @@
 
 namespace relume {
 
-/// What a surface is painted with in one place, for factors of 1.
+/// Holds what a surface is painted with in one place, for factors of 1.
 struct SurfaceColour {
     glm::vec4 albedo{0.0f}, emission{0.0f};
 };

@@ -30,7 +30,7 @@ std::vector<uint32_t> findInside(const InsideSearch& search);
 /// Returns the device bytes that it takes, on a software device or a GPU.
 uint64_t insideBytes(uint32_t chunks, bool software);
 
-/// Where a place lies; Touching: outside, but mayTouch().
+/// Says where a place lies; Touching: outside, but mayTouch().
 enum class PlaceKind : uint8_t { Outside, Touching, Inside };
 
 /// Finds out which places lie inside something. It keeps its buffers from one search to the next.

@@ -118,7 +118,7 @@ void leaveSurfaces(const CoverSearch& search, PlaceSearcher& searcher, std::span
             seesOutside = seesOutside || (clear && sides[end].seen);
             if (clear && outside == kStays) outside = sides[end].cell;
         }
-        // Where a point sees what lies outside and nothing else, it lies there itself.
+        // A point that sees what lies outside, and nothing else, lies there itself.
         if (hidden && (seesInside || !seesOutside)) cells[sides[begin].patch] = static_cast<uint8_t>(outside);
     }
 }

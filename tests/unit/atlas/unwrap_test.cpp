@@ -350,22 +350,18 @@ Scene squareOfTwoSets() {
     return scene;
 }
 
-// A normal map's UVs go along with those of other textures, but where only it would need a third set beside
-// two others, the mesh gets its lightmap all the same.
+// A normal map's UVs move along; where it alone needs a third set, the mesh gets its lightmap all the same.
 TEST(Unwrap, UvsOfKeptMapsMoveToo) {
     Scene scene = squareOfTwoSets();
     const Primitive before = scene.meshes[0].primitives[0];
     Material& material = scene.materials[0];
     material.baseColorTexture = {};
-    scene.keptTextures.resize(1);
     material.normalMap.use = {0, 1, glm::mat3(1)};
     EXPECT_EQ(unwrap(scene, {}).meshes, 1u);
     EXPECT_EQ(uvsOf(scene.meshes[0].primitives[0], material.normalMap.use), before.texCoord1);
     EXPECT_EQ(uvsOf(scene.meshes[0].primitives[0], material.emissionTexture), before.texCoord0);
-
     scene = squareOfTwoSets();
     scene.meshes[0].primitives[0].texCoord2 = before.texCoord0;
-    scene.keptTextures.resize(1);
     scene.materials[0].normalMap.use = {0, 2, glm::mat3(1)};
     EXPECT_EQ(unwrap(scene, {}).meshes, 1u);
     EXPECT_EQ(lightmapSet(scene.meshes[0]), 1);

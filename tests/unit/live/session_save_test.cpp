@@ -43,6 +43,16 @@ protected:
         session_.save(path);
         return until([&] { return !session_.saving(); }) && session_.lastError().empty();
     }
+    /// Opens a scene whose file another program writes anew, and saves an edit while that is read.
+    void saveWhileItIsRead() {
+        open();
+        session_.watchFile(true);
+        writeFile(kScenes + "cornell_small.glb");
+        ASSERT_TRUE(until([&] { return session_.loading(); }));
+        dim(0.5f);
+        session_.endEdit();
+        session_.save(); // once the file is read
+    }
     static size_t nodesOf(const std::string& path) {
         const std::string bytes = bytesOf(path);
         size_t count = 0;
@@ -228,13 +238,7 @@ TEST_F(SessionSaveTest, WhereNobodyWatchesASaveFindsItsNodesToo) {
 }
 
 TEST_F(SessionSaveTest, WaitsForAFileThatIsWrittenAgainWhileItIsRead) {
-    open();
-    session_.watchFile(true);
-    writeFile(kScenes + "cornell_small.glb");
-    ASSERT_TRUE(until([&] { return session_.loading(); }));
-    dim(0.5f);
-    session_.endEdit();
-    session_.save(); // once the file is read
+    saveWhileItIsRead();
     Document next = session_.document();
     next.bake.size = 2 * kSize;
     session_.edit("Size", next); // reads it once more
@@ -247,13 +251,7 @@ TEST_F(SessionSaveTest, WaitsForAFileThatIsWrittenAgainWhileItIsRead) {
 }
 
 TEST_F(SessionSaveTest, WhatAnotherSceneOvertakesIsTold) {
-    open();
-    session_.watchFile(true);
-    writeFile(kScenes + "cornell_small.glb");
-    ASSERT_TRUE(until([&] { return session_.loading(); }));
-    dim(0.5f);
-    session_.endEdit();
-    session_.save();
+    saveWhileItIsRead();
     session_.open(kScenes + "cornell_geom.glb");
     writeFile(kScenes + "cornell_small.glb");
     ASSERT_TRUE(until([&] { return session_.path() != file() && !session_.loading(); }));
