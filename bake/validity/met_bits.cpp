@@ -34,7 +34,7 @@ Inside insideBy(const MetBits& met) {
 
 bool mayTouch(const MetBits& met) {
     const uint32_t unknown = met.backs & met.sky;
-    return (unknown & kFirst) == 0 && std::popcount(met.backs & kFirst) >= 2 && insideBy(met) == Inside::No;
+    return (unknown & kFirst) == 0 && (met.backs & kFirst) != 0 && insideBy(met) == Inside::No;
 }
 
 } // namespace relume

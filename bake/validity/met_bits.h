@@ -27,7 +27,7 @@ Inside insideBy(const MetBits& met);
 
 /// Tells whether a patch that does not lie inside something may lie upon a surface that stands on its own,
 /// exactly, as walls do on the middles of texels where all sizes are round: half of its directions begin
-/// inside that. At least two of its first directions meet backs then.
+/// inside that, at a corner a quarter. At least one of its first directions meets a back then.
 bool mayTouch(const MetBits& met);
 
 } // namespace relume

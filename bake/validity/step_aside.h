@@ -20,8 +20,10 @@ struct CellsToTry {
 /// farthest from that. Others are beside these, and hardly ever lie outside where both lie inside.
 CellsToTry cellsToTry(const shader::PatchCover& cover, uint32_t cells);
 
-/// The cells on two sides of the middle, twice, by which a patch upon a surface is told.
-constexpr std::array<uint32_t, 4> kSideCells = {10, 14, 2, 22};
+/// The cells on four sides of the middle by which a patch upon a surface is told: a knight's move away, so
+/// that walls along the texel's sides or diagonals, and corners of two of them, have each cell on one side or
+/// the other.
+constexpr std::array<uint32_t, 4> kSideCells = {3, 5, 19, 21};
 
 /// Lets patches that lie inside something step aside, where part of their texel lies outside: their own point
 /// becomes the middle of a cell that it did not see and that lies outside (cellsToTry), and they send from
