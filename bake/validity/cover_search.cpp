@@ -138,7 +138,8 @@ private:
         program_->dispatch(cmd, push, range.count);
     }
 
-    // Does what shaders/surface/places.comp does; the bits of places that need no segment go to `here`.
+    // Does what shaders/surface/places.comp does, but leaves out cells that are not covered, of which nobody
+    // reads the bits; the bits of places that need no segment go to `here`.
     void makeTargets(std::span<const uint32_t> which, ChunkRange range, Places places, uint32_t* here) {
         auto* const targets = targets_.as<glm::vec4>();
         const uint32_t count = countOf(places);
@@ -152,7 +153,9 @@ private:
                 const uint32_t patch = which[i];
                 const size_t chunk = patch / kChunk - range.first;
                 here[i] = 0;
+                const uint32_t asked = places == Places::Rim ? ~0u : search_.patches.coverCells[patch];
                 for (uint32_t k = 0; k < count; ++k) {
+                    if ((asked >> k & 1u) == 0) continue;
                     const glm::vec4 target = shader::placeTarget(
                         search_.patches.scene.patches[patch], search_.patches.covers[patch],
                         places == Places::Rim ? shader::rimPlace(k) : shader::cellPlace(k));
