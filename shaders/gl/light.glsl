@@ -12,10 +12,11 @@ layout(location = 15) uniform float dither;    // of colours: 1, or 0 for none
 //
 // Both are dithered: between two steps of 8 bits the share of pixels decides, so dark walls show no contours, and
 // the meter is finer than an eighth of an EV [Jimenez 2014, interleaved gradient noise]. As noise stays below half
-// a step, colours that are steps already stay as they are.
+// a step, colours that are steps already stay as they are. Both are rounded here: what some GPUs round by themselves
+// is off by a twentieth of a step.
 vec4 displayedLight(vec3 light) {
     float noise = 0.998 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.499;
     float code = meterCode(luminance(light) * meterScale);
-    vec3 color = toneMapAsSrgb(light * exposure, TONE) + dither * noise / 255.0;
-    return vec4(color, code > 0.0 ? (code + noise) / 255.0 : 0.0);
+    vec3 steps = 255.0 * toneMapAsSrgb(light * exposure, TONE) + dither * noise;
+    return floor(vec4(steps, code > 0.0 ? code + noise : 0.0) + 0.5) / 255.0;
 }

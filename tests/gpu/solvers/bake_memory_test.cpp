@@ -69,6 +69,10 @@ uint64_t bytesNamed(const vk::MemoryLedger& ledger, const std::array<const char*
 constexpr std::array kLayerNames = {"layer", "direct light of a layer", "direct light of all layers",
                                     "light of lights grouped anew"};
 
+constexpr std::array kSearchNames = {
+    "links",       "links that come back", "patches that are asked", "places in texels",
+    "seen places", "places near by",       "patches that ask",       "rays"};
+
 /// Returns what bounces of several layers side by side take beyond those of one.
 uint64_t besideBytes(const vk::MemoryLedger& ledger, uint64_t chunks) {
     const uint64_t beside =
@@ -83,18 +87,20 @@ Taken measure(const Scene& scene, const BakeDesc& desc, PatchSet& patches) {
     vk::MemoryLedger& ledger = testDevice().ledger();
     const uint64_t before = ledger.bytes();
     Taken taken;
-    uint64_t base = before, surfaceBefore = ledger.bytesOf("surface");
+    uint64_t base = before, surfaceBefore = ledger.bytesOf("surface"), others = 0;
     std::string phase;
     ledger.resetPeak();
     const auto next = [&](const char* name) {
         const uint64_t most = ledger.peak() - base;
         taken.all = std::max(taken.all, ledger.peak() - before);
         if (phase == "cit") taken.cit = most;
-        const bool searched = phase == "tracer" || phase == "validity";
-        if (searched) { // covers are made then, too, which are the surface's
-            const uint64_t others = ledger.bytesOf("trace") + ledger.bytesOf("surface") - surfaceBefore;
+        // Covers are made while patches are searched, too, which are the surface's. What tracers take once it
+        // is known who sends, behind the last search, is left out.
+        if (phase == "tracer" || std::string(name) == "validity")
+            others = ledger.bytesOf("trace") - bytesNamed(ledger, kSearchNames) + ledger.bytesOf("surface") -
+                     surfaceBefore;
+        if (phase == "tracer" || phase == "validity")
             taken.inside = std::max(taken.inside, most - std::min(most, others));
-        }
         if (std::string(name) == "solver set-up") taken.surface = ledger.bytesOf("surface");
         if (phase != name && std::string(name) != "validity") {
             base = ledger.bytes();

@@ -12,12 +12,12 @@ precision highp sampler2D;
 @lib/light/sky_place.glsl@
 uniform float meterScale; // brings the scene's light near 1, whatever its unit
 uniform float exposure;   // factor
-// Returns light as displayed; a: how bright it is, for the meter. Both are dithered, as the program does it.
+// Returns light as displayed; a: how bright it is, for the meter. Both are dithered and rounded, as the program does it.
 vec4 displayedLight(vec3 light) {
     float noise = 0.998 * fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715)))) - 0.499;
     float code = meterCode(luminance(light) * meterScale);
-    vec3 color = toneMapAsSrgb(light * exposure, kToneAgx) + noise / 255.0;
-    return vec4(color, code > 0.0 ? (code + noise) / 255.0 : 0.0);
+    vec3 steps = 255.0 * toneMapAsSrgb(light * exposure, kToneAgx) + noise;
+    return floor(vec4(steps, code > 0.0 ? code + noise : 0.0) + 0.5) / 255.0;
 }
 `;
     const screenVertex = `
