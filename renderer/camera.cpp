@@ -13,6 +13,7 @@ constexpr float kPoleMargin = 0.01f; // [rad] to the poles, where yaw has no mea
 // Things nearer than this share of the scene's diagonal are cut off. Depth is as good with any share, see
 // projectionMatrix.
 constexpr float kNearShare = 1e-4f;
+constexpr glm::vec3 kUpright(0.0f, 1.0f, 0.0f);
 
 glm::vec3 rotated(const glm::vec3& v, float angle, const glm::vec3& axis) {
     return glm::vec3(glm::rotate(glm::mat4(1.0f), angle, axis) * glm::vec4(v, 0.0f));
@@ -30,6 +31,15 @@ glm::vec3 turned(const glm::vec3& offset, const ViewCamera& camera, float yaw, f
     if (glm::dot(flat, offset) < 0.0f) flat = -flat;
     flat = rotated(flat, yaw, camera.up);
     return length * (std::cos(wanted) * camera.up + std::sin(wanted) * flat);
+}
+
+// Returns what a file's camera turns about. Its own up leans back where it looks down, and turns about that
+// would tilt the horizon: a camera that shows the horizon level turns about the upright.
+glm::vec3 upOfFile(const glm::vec3& ahead, const glm::vec3& ownUp) {
+    constexpr float kRoll = 1e-4f; // [rad]: what is rolled by more shows what the file says
+    const glm::vec3 side = glm::normalize(glm::cross(ahead, ownUp));
+    const bool level = std::abs(side.y) <= kRoll && ownUp.y > kPoleMargin;
+    return level ? kUpright : ownUp;
 }
 
 } // namespace
@@ -89,10 +99,17 @@ ViewCamera look(const ViewCamera& camera, float yaw, float pitch) {
 std::vector<ViewCamera> turntable(const ViewCamera& camera, const Box& box, uint32_t count) {
     const bool inside = glm::all(glm::greaterThanEqual(camera.eye, box.low)) &&
                         glm::all(glm::lessThanEqual(camera.eye, box.high));
-    std::vector<ViewCamera> out;
-    for (uint32_t i = 0; i < count; ++i) {
+    const glm::vec3 pivot = inside ? camera.eye : camera.target;
+    // It is the picture's own up, as what looks straight down has no other that turns with it.
+    const glm::vec3 above = glm::cross(right(camera), forward(camera));
+    std::vector<ViewCamera> out = {camera};
+    for (uint32_t i = 1; i < count; ++i) {
         const float yaw = glm::two_pi<float>() * static_cast<float>(i) / static_cast<float>(count);
-        out.push_back(i == 0 ? camera : inside ? look(camera, yaw, 0.0f) : orbit(camera, yaw, 0.0f));
+        ViewCamera moved = camera;
+        moved.eye = pivot + rotated(camera.eye - pivot, yaw, kUpright);
+        moved.target = pivot + rotated(camera.target - pivot, yaw, kUpright);
+        moved.up = rotated(above, yaw, kUpright);
+        out.push_back(moved);
     }
     return out;
 }
@@ -157,7 +174,7 @@ ViewCamera cameraOfFile(const Camera& camera, const Box& bounds) {
     constexpr float kNearest = 0.1f; // of the diagonal
     const float distance = std::max(glm::dot(bounds.centre() - eye, ahead), kNearest * diagonal);
     ViewCamera view = cameraAt(eye, eye + distance * ahead, bounds);
-    view.up = glm::normalize(glm::vec3(camera.transform[1]));
+    view.up = upOfFile(ahead, glm::normalize(glm::vec3(camera.transform[1])));
     view.yfov = camera.yfov;
     if (camera.znear > 0.0f) view.znear = camera.znear;
     if (!camera.perspective) {

@@ -35,8 +35,8 @@ glm::mat4 projectionMatrix(const ViewCamera& camera, float aspect);
 ViewCamera orbit(const ViewCamera& camera, float yaw, float pitch);
 /// Turns the target about the eye [rad]; it stops short of the poles.
 ViewCamera look(const ViewCamera& camera, float yaw, float pitch);
-/// Returns the cameras of a turn in so many pictures, counter-clockwise, the given one first: about the
-/// target, or where the eye is within the box, in its place.
+/// Returns the cameras of a turn about the upright in so many pictures, counter-clockwise, the given one
+/// first: about the target, or where the eye is within the box, in its place.
 std::vector<ViewCamera> turntable(const ViewCamera& camera, const Box& box, uint32_t count);
 /// Moves by shares of the picture's height at the target: right and up.
 ViewCamera pan(const ViewCamera& camera, float dx, float dy);
@@ -48,7 +48,8 @@ ViewCamera fly(const ViewCamera& camera, const glm::vec3& move);
 /// Returns a camera of the same direction and angle, from where all of the box is just seen.
 ViewCamera frameBox(const ViewCamera& camera, const Box& box, float aspect);
 
-/// Returns the camera for one of a file in a scene with these bounds, which give the target's distance.
+/// Returns the camera for one of a file in a scene with these bounds, which give the target's distance. What
+/// shows the horizon level turns about the upright.
 ViewCamera cameraOfFile(const Camera& camera, const Box& bounds);
 /// Returns a camera at `eye` looking at `target` in a scene with these bounds.
 ViewCamera cameraAt(const glm::vec3& eye, const glm::vec3& target, const Box& bounds);

@@ -144,6 +144,52 @@ TEST(Camera, TakesAFilesCamera) {
     EXPECT_FLOAT_EQ(camera.znear, file.znear);
 }
 
+// A file's camera that looks down, as most do: its own up leans back.
+Camera lookingDown(const glm::vec3& eye, const glm::vec3& target) {
+    Camera file;
+    file.transform = glm::inverse(glm::lookAt(eye, target, {0, 1, 0}));
+    return file;
+}
+
+TEST(Camera, OfAFileTurnsAboutTheUprightUnlessItIsRolled) {
+    const Camera file = lookingDown({5, 4, 7}, {0, 0.8f, -1});
+    const ViewCamera camera = cameraOfFile(file, unitBox());
+    expectNear(right(camera), glm::vec3(file.transform[0])); // the picture is the file's
+    for (const float yaw : {0.5f, 2.0f, 3.14f}) {
+        const ViewCamera moved = orbit(camera, yaw, 0.0f);
+        EXPECT_NEAR(moved.eye.y, camera.eye.y, 1e-5f); // it had gone below the ground
+        EXPECT_NEAR(right(moved).y, 0.0f, 1e-6f);      // the horizon had been tilted
+        EXPECT_NEAR(right(look(camera, yaw, 0.2f)).y, 0.0f, 1e-6f);
+    }
+    Camera rolled = file;
+    rolled.transform = file.transform * glm::rotate(glm::mat4(1.0f), 0.01f, {0, 0, 1});
+    expectNear(right(cameraOfFile(rolled, unitBox())), glm::vec3(rolled.transform[0]));
+    Camera onItsHead = file;
+    onItsHead.transform = file.transform * glm::rotate(glm::mat4(1.0f), glm::pi<float>(), {0, 0, 1});
+    expectNear(right(cameraOfFile(onItsHead, unitBox())), glm::vec3(onItsHead.transform[0]));
+    Camera plan;
+    plan.transform = glm::translate(glm::mat4(1.0f), {0, 9, 0}) *
+                     glm::rotate(glm::mat4(1.0f), -glm::half_pi<float>(), {1, 0, 0});
+    expectNear(right(cameraOfFile(plan, unitBox())), {1, 0, 0});
+}
+
+TEST(Turntable, KeepsEachPictureUprightHoweverTheCameraLooks) {
+    ViewCamera rolled = along({3, 4, 5}, {0, 1, 0});
+    rolled.up = glm::normalize(glm::vec3(0.3f, 1.0f, -0.2f));
+    const float tilt = right(rolled).y;
+    for (const ViewCamera& camera : turntable(rolled, unitBox(), 7)) {
+        EXPECT_NEAR(camera.eye.y, 4.0f, 1e-5f);
+        EXPECT_NEAR(right(camera).y, tilt, 1e-6f);
+        EXPECT_NEAR(glm::distance(camera.eye, camera.target), glm::distance(rolled.eye, rolled.target),
+                    1e-5f);
+    }
+    const std::vector<ViewCamera> plan = turntable(along({0, 9, 0}, {0, 0, 0}), unitBox(), 4);
+    for (size_t i = 1; i < plan.size(); ++i) { // seen from straight above, the plan turns
+        expectNear(plan[i].eye, {0, 9, 0});
+        EXPECT_NEAR(glm::dot(right(plan[i - 1]), right(plan[i])), 0.0f, 1e-6f);
+    }
+}
+
 TEST(Frustum, SeesWhatIsInThePictureOnly) {
     ViewCamera camera = along({0, 0, 5}, {0, 0, 0});
     camera.yfov = glm::half_pi<float>();
