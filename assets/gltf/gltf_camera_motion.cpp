@@ -34,25 +34,28 @@ std::vector<CameraNode> cameraNodes(const Build& build) {
     return out;
 }
 
-CameraNode chosenCamera(const Build& build, const std::string& name) {
-    const std::vector<CameraNode> all = cameraNodes(build);
-    if (all.empty())
-        throw Error(fmt::format("{}: has no camera that its animation could move: leave out --path animation",
-                                build.path));
-    if (name.empty()) return all.front();
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const CameraNode& c) { return c.camera.name == name; });
-    if (found == all.end())
-        throw Error(
-            fmt::format("{}: has no camera {}: 'relume info' lists them", build.path, inQuotes(name)));
-    return *found;
-}
-
 bool isMoved(const Build& build, size_t node, const Poses& poses) {
     const std::vector<int> parents = parentsOf(build.nodes);
     for (int i = static_cast<int>(node); i >= 0; i = parents[static_cast<size_t>(i)])
         if (poses.contains(static_cast<size_t>(i))) return true;
     return false;
+}
+
+// Returns the camera of this name, or without a name the first one that the poses move, else the first one.
+CameraNode chosenCamera(const Build& build, const std::string& name, const Poses& poses) {
+    const std::vector<CameraNode> all = cameraNodes(build);
+    if (all.empty())
+        throw Error(fmt::format("{}: has no camera that its animation could move: leave out --path animation",
+                                build.path));
+    const auto found = std::find_if(all.begin(), all.end(), [&](const CameraNode& c) {
+        return name.empty() ? isMoved(build, c.node, poses) : c.camera.name == name;
+    });
+    if (found != all.end()) return *found;
+    if (name.empty()) return all.front();
+    std::string names;
+    for (const CameraNode& c : all)
+        names += (names.empty() ? "" : ", ") + inQuotes(c.camera.name);
+    throw Error(fmt::format("{}: has no camera {}: it has {}", build.path, inQuotes(name), names));
 }
 
 bool isFinite(const glm::mat4& m) {
@@ -76,7 +79,7 @@ CameraMotion readCameraMotion(const std::string& path, const GltfChoice& choice,
     build.limit = gltf::checkSizes(file);
     gltf::parse(std::move(file), build);
     CameraMotion motion{.seconds = gltf::secondsOfAnimation(build), .cameras = {}};
-    const gltf::CameraNode chosen = gltf::chosenCamera(build, name);
+    const gltf::CameraNode chosen = gltf::chosenCamera(build, name, gltf::posesOver(build, {0.0}).front());
     const double steps = std::max(1.0, std::round(motion.seconds * rate));
     if (steps >= most)
         throw Error(

@@ -324,9 +324,14 @@ TEST(GltfCameraMotion, FollowsTheCameraAndWhatIsAboveIt) {
         expectPoint(glm::vec3(motion.cameras[i].transform[3]), {0, 1 + 0.2f * static_cast<float>(i), 0});
         EXPECT_FLOAT_EQ(motion.cameras[i].yfov, 0.5f);
     }
-    EXPECT_NE(motionError(path, "").find("does not move camera 'Still'"), std::string::npos)
-        << motionError(path, "");
-    EXPECT_NE(motionError(path, "None").find("has no camera 'None'"), std::string::npos);
+    const CameraMotion moved = readCameraMotion(path, {}, "", 10, 1000);
+    ASSERT_EQ(moved.cameras.size(), 21u);
+    EXPECT_FLOAT_EQ(moved.cameras[0].yfov, 0.5f) << "the first camera that the animation moves";
+    EXPECT_NE(motionError(path, "Still").find("does not move camera 'Still'"), std::string::npos)
+        << motionError(path, "Still");
+    EXPECT_NE(motionError(path, "None").find("has no camera 'None': it has 'Still', 'Riding'"),
+              std::string::npos)
+        << motionError(path, "None");
     EXPECT_NE(motionError(path, "Riding", 20).find("21 pictures, more than 20"), std::string::npos)
         << motionError(path, "Riding", 20);
 }
