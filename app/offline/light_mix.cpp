@@ -70,6 +70,13 @@ void turnOff(LayeredImage::Layer& layer) {
     layer.weight = glm::vec3(0.0f);
 }
 
+std::vector<glm::vec3> weightsOf(const LayeredImage& image) {
+    std::vector<glm::vec3> weights;
+    for (const LayeredImage::Layer& layer : image.layers)
+        weights.push_back(layer.weight);
+    return weights;
+}
+
 // Drops the channels that are no sum of layers, such as an error per texel: they are not those of the new
 // sum.
 void keepSummedChannels(FloatImage& image) {
@@ -131,6 +138,7 @@ glm::vec3 colorOf(const LayeredImage::Layer& layer) {
 }
 
 void mixLayers(LayeredImage& image, const MixDesc& desc) {
+    const std::vector<glm::vec3> before = weightsOf(image);
     for (const WeightEdit& edit : desc.edits) {
         LayeredImage::Layer& layer = layerOf(image, edit.name);
         if (edit.isFactor) {
@@ -150,6 +158,8 @@ void mixLayers(LayeredImage& image, const MixDesc& desc) {
     }
     for (const std::string& name : desc.muted)
         turnOff(layerOf(image, name));
+    // It is told of the sum by the weights of the bake: that of noisy lights alone may be ten times as large.
+    if (weightsOf(image) != before) image.composite.attributes.erase("relume:error");
     sum(image);
 }
 

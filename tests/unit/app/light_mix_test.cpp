@@ -75,6 +75,15 @@ TEST(LightMix, LightsOfAGroupCannotBeSetApart) {
 }
 
 // A light's name may have a line end, as any text of a glTF file.
+TEST(LightMix, TellsNoErrorOfOtherWeightsThanThoseOfTheBake) {
+    LayeredImage image = board();
+    image.composite.attributes["relume:error"] = "0.01";
+    mixLayers(image, sets({"Lamp*=1"}));
+    EXPECT_EQ(image.composite.attributes.count("relume:error"), 1u) << "nothing changed";
+    mixLayers(image, {.edits = {}, .muted = {}, .solo = {"Sky"}});
+    EXPECT_EQ(image.composite.attributes.count("relume:error"), 0u);
+}
+
 TEST(LightMix, NamesOfAGroupMayHaveLineEnds) {
     const std::vector<std::string> names = {"two\nlines", "a\\nb", "\\", "Lamp 7"};
     Layer group;
