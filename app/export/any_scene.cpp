@@ -79,8 +79,11 @@ std::vector<int> lightByEmission(EngineScene& level, const SurfaceLight& light,
     const float factor = std::exp2(exposure);
     for (size_t i = 0; i < scene.materials.size(); ++i) {
         Material& material = scene.materials[i];
-        if (material.pane) { // it stays what it is and shows light through it
+        if (material.pane) {
             material.emission *= factor;
+            // What transmits tints what is behind it by its colour. What blends shows the light that it has,
+            // and would be brighter by that of a viewer's surroundings.
+            if (material.transmission <= 0.0f) reflectNothing(material);
             continue;
         }
         if (level.lit[i]) {

@@ -223,6 +223,31 @@ TEST(AnyScene, WhateverShinesIsBroughtToTheScreen) {
     EXPECT_EQ(emissionOf(2), glm::vec3(0.5f, 0.5f, 4.0f)); // without UVs
 }
 
+// A viewer's surroundings are no light of the level's.
+TEST(AnyScene, PanesThatBlendReflectNothingAndThoseThatTransmitKeepTheirTint) {
+    for (const float transmission : {0.0f, 0.9f}) {
+        ThreeObjects three;
+        Material& pane = three.scene.materials[0];
+        pane.pane = true;
+        pane.alphaMode = AlphaMode::Blend;
+        pane.baseColor = {0.5f, 0.7f, 1.0f, 0.3f};
+        pane.transmission = transmission;
+        EngineScene level = engineScene(three.scene, three.atlas, kAmbient);
+        SurfaceLight light;
+        light.size = 1;
+        light.reflected = {glm::vec3(6.0f)};
+        light.emitted = {glm::vec3(0.0f)};
+        light.material = {1};
+        lightByEmission(level, light, three.scene.materials, 0.0f);
+        for (const Material& material : level.scene.materials) {
+            EXPECT_EQ(material.baseColor.a, 0.3f);
+            EXPECT_EQ(glm::vec3(material.baseColor),
+                      transmission > 0.0f ? glm::vec3(0.5f, 0.7f, 1.0f) : glm::vec3(0.0f));
+            EXPECT_EQ(material.emission, glm::vec3(0.5f, 0.7f, 1.0f) * kAmbient);
+        }
+    }
+}
+
 TEST(EngineScene, HiddenObjectsAreLeftOut) {
     ThreeObjects three;
     three.scene.instances[0].hidden = true;
