@@ -324,6 +324,44 @@ TEST_F(MixBoard, ExposureIsMeasuredAsAShotDoes) {
     EXPECT_NEAR(told["measured"].get<double>(), std::stod(shot.err.substr(at + 9)), 0.05);
 }
 
+// Makes a row of narrow posts below an even sky, most of whose pixels are edges, and writes the level. The
+// camera looks at them, or away from them.
+std::string postsLevel(const TemporaryFolder& folder, bool away) {
+    constexpr int kPosts = 40;
+    test::GlbBuilder b;
+    json post = b.square();
+    post["attributes"]["TEXCOORD_0"] = b.squareUvs();
+    const int mesh = b.mesh(post);
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"znear", 0.1}}}}};
+    json camera = {{"camera", 0}, {"translation", {0.5, 0.5, 1.4}}};
+    if (away) camera["rotation"] = {0, 1, 0, 0};
+    json nodes = json::array({b.node(camera)});
+    for (int i = 0; i < kPosts; ++i)
+        nodes.push_back(b.node(
+            {{"mesh", mesh}, {"translation", {-0.6 + 2.2 * i / kPosts, 0, 0}}, {"scale", {0.005, 1, 1}}}));
+    b.json["scenes"] = {
+        {{"nodes", nodes}, {"extras", {{"relume", {{"sky", {{"color", {1, 1, 1}}, {"intensity", 5}}}}}}}}};
+    const std::vector<uint8_t> bytes = b.bytes();
+    writeFileAtomically(folder.path("posts.glb"), std::string(bytes.begin(), bytes.end()));
+    return folder.path("posts.glb");
+}
+
+TEST_F(MixBoard, ExposureIsMeasuredAsAShotDoesAtEdgesBeforeTheSkyAndWhereNothingElseIsSeen) {
+    for (const bool away : {false, true}) {
+        const std::string scene = postsLevel(out_, away), exr = out_.path("layers.exr"),
+                          page = out_.path(away ? "away" : "posts");
+        run({"bake", scene, "--layers", "-o", exr, "--size", "64", "--samples", "16"});
+        run({"export", scene, "--layers", exr, "--web", page});
+        const json told = opened(page + "/index.html", {{"viewport", {340 + kPageWidth, kPageHeight}}});
+        const ProcessResult shot =
+            runRelume({"shot", scene, "--lightmap", exr, "--size",
+                       fmt::format("{}x{}", kPageWidth, kPageHeight), "-o", out_.path("shot.png")});
+        const size_t at = shot.err.find("exposure ");
+        ASSERT_NE(at, std::string::npos) << shot.err;
+        EXPECT_NEAR(told["measured"].get<double>(), std::stod(shot.err.substr(at + 9)), 0.1) << away;
+    }
+}
+
 TEST_F(MixBoard, GalleryAtFullSizeFitsIn25Megabytes) {
     const std::string large = out_.path("large.exr");
     run({"bake", kGallery, "--layers", "-o", large, "--size", "512", "--samples", "16", "--half"});

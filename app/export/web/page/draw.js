@@ -290,12 +290,12 @@ relume.makeDrawing = async function (canvas, data) {
     }
 
     // ---- the picture ----
-    const samples = Math.min(4, gl.getParameter(gl.MAX_SAMPLES));
-    const target = { width: 0, height: 0, framebuffer: gl.createFramebuffer(), resolved: gl.createFramebuffer(),
+    const kSamples = Math.min(4, gl.getParameter(gl.MAX_SAMPLES)), kOne = 0; // 0: a buffer without multisampling
+    const target = { width: 0, height: 0, samples: kOne, framebuffer: gl.createFramebuffer(), resolved: gl.createFramebuffer(),
         color: gl.createRenderbuffer(), depth: gl.createRenderbuffer(), texture: null };
-    function resize(width, height) {
-        if (target.width === width && target.height === height) return;
-        Object.assign(target, { width, height });
+    function resize(width, height, samples) {
+        if (target.width === width && target.height === height && target.samples === samples) return;
+        Object.assign(target, { width, height, samples });
         gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
         for (const [buffer, format, place] of [[target.color, gl.RGBA8, gl.COLOR_ATTACHMENT0],
             [target.depth, gl.DEPTH_COMPONENT32F, gl.DEPTH_ATTACHMENT]]) {
@@ -329,8 +329,8 @@ relume.makeDrawing = async function (canvas, data) {
     }
     // Draws a picture of width x height pixels. state: { camera, exposure [EV], glow, sides: [[0 or 1, left, right], ...] },
     // the sides' borders as shares of the width.
-    function render(state, width, height) {
-        resize(width, height);
+    function render(state, width, height, samples = kSamples) {
+        resize(width, height, samples);
         if (clip) clip.clipControlEXT(clip.LOWER_LEFT_EXT, clip.ZERO_TO_ONE_EXT);
         gl.bindFramebuffer(gl.FRAMEBUFFER, target.framebuffer);
         gl.viewport(0, 0, width, height);
@@ -370,16 +370,25 @@ relume.makeDrawing = async function (canvas, data) {
         gl.bindVertexArray(none);
         gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
-    // Returns the pixels of a picture, the lowest row first: as displayed, and in A what the meter reads.
-    function pixels(state, width, height) {
-        render(state, width, height);
+    function read(width, height) {
         const out = new Uint8Array(4 * width * height);
         gl.bindFramebuffer(gl.FRAMEBUFFER, target.resolved);
         gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, out);
         return out;
     }
+    // Returns the pixels of a picture, the lowest row first, as displayed.
+    function pixels(state, width, height) {
+        render(state, width, height);
+        return read(width, height);
+    }
+    // Returns the same with what the meter reads in A: of one sample, because the mean of a code and of none, as at edges
+    // before the sky, would be the code of something dark.
+    function meterPixels(state, width, height) {
+        render(state, width, height, kOne);
+        return read(width, height);
+    }
     // Waits until all that was asked for is drawn.
     const finish = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
     const meanOf = (side) => maths.luminance(mixed[side].ambient);
-    return { mix, hold, show, pixels, finish, meanOf };
+    return { mix, hold, show, pixels, meterPixels, finish, meanOf };
 };

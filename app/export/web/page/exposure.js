@@ -4,7 +4,7 @@ relume.measuredExposure = function (drawing, state, aspect) {
     const kCells = 64, kMiddleGrey = 0.18, kDarkest = 1 / 64; // of the mean: black corners shall not brighten the rest
     const kLowest = -20, kSteps = 8;                          // of the code in a picture's A (shaders/lib/tone.glsl)
     const width = 6 * kCells, height = Math.max(kCells, Math.round(width / aspect));
-    const pixels = drawing.pixels(state, width, height);
+    const pixels = drawing.meterPixels(state, width, height);
     const cells = new Map(); // sum of log2, number of pixels
     let sum = 0, count = 0;
     for (let y = 0; y < height; ++y)
@@ -18,10 +18,11 @@ relume.measuredExposure = function (drawing, state, aspect) {
             sum += 2 ** bright;
             count += 1;
         }
-    if (count === 0) return 0;
+    const mean = drawing.meanOf(state.sides[0][0]);
+    const ofMean = mean > 0 ? -Math.log2(mean) : 0; // which the codes are relative to
+    if (count === 0) return ofMean; // only the sky is seen
     const darkest = Math.log2(kDarkest * sum / count);
     let logs = 0;
     for (const [log, number] of cells.values()) logs += number * Math.max(log / number, darkest);
-    const mean = drawing.meanOf(state.sides[0][0]);
-    return Math.log2(kMiddleGrey) - logs / count + (mean > 0 ? Math.log2(1 / mean) : 0);
+    return Math.log2(kMiddleGrey) - logs / count + ofMean;
 };
