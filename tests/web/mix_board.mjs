@@ -96,6 +96,24 @@ try {
         result.afterKeys = await state();
         await tab.keyboard.press('+');
         result.afterPlus = await state();
+        const camera = () => tab.evaluate(() => document.querySelector('#camera').selectedIndex);
+        result.cameraMoved = await camera();
+        await tab.selectOption('#camera', '0');
+        result.afterChoice = await state();
+        result.cameraChosen = await camera();
+        // Each of these is to be seen, although a picture of the bake on its way hides the scene.
+        if (await tab.isVisible('#scrubber')) {
+            result.hides = [];
+            for (const control of ['#mixB', '#compare', '#reset', '#glow', '#measure']) {
+                await tab.evaluate(() => document.querySelector('#moment').dispatchEvent(new Event('input')));
+                const shown = await tab.isVisible('#frame');
+                await tab.click(control);
+                if (shown && !await tab.isVisible('#frame')) result.hides.push(control);
+            }
+            await tab.click('#copy');
+            await tab.click('#mixA');
+            result.oldCommand = await tab.isVisible('#command');
+        }
         result.unlabelled = await tab.evaluate(() => [...document.querySelectorAll('input, select, button, textarea')]
             .filter((control) => !(control.labels?.length || control.getAttribute('aria-label') || control.textContent.trim())).length);
     }

@@ -289,6 +289,19 @@ TEST_F(MixBoard, KeysReachEveryControl) {
     EXPECT_NE(after["camera"]["eye"], before["camera"]["eye"]);
     EXPECT_LT(number(told["afterPlus"]["camera"], "eye", "target"),
               0.95 * number(after["camera"], "eye", "target"));
+    // What moved is no camera of the list: a browser tells of a choice only where it is another one.
+    EXPECT_EQ(told["cameraMoved"], -1);
+    EXPECT_EQ(told["cameraChosen"], 0);
+    EXPECT_EQ(told["afterChoice"]["camera"], before["camera"]);
+}
+
+TEST_F(MixBoard, ALightThatTheFileHasAtZeroIsTurnedUp) {
+    const std::string dark = out_.path("dark.exr");
+    run({"mix", layers(), "--set", "Lamp 1=0", "--layers-out", "-o", dark});
+    run({"export", kGallery, "--layers", dark, "--web", out_.path("dark")});
+    const json told = opened(out_.path("dark/index.html"), {{"viewport", {1280, 800}}, {"keys", true}});
+    EXPECT_EQ(told["before"]["lights"][0]["intensity"], 0);
+    EXPECT_GT(told["afterKeys"]["lights"][0]["intensity"], 0);
 }
 
 TEST_F(MixBoard, FingersTurnAndPinchOnAPhone) {
@@ -306,12 +319,21 @@ TEST_F(MixBoard, FingersTurnAndPinchOnAPhone) {
 }
 
 TEST_F(MixBoard, OneFileHoldsTheWholePage) {
+    fs::create_directory(out_.path("lapse"));
+    FloatImage frame{16, 16, {}, {}, {}};
+    for (const char* channel : {"R", "G", "B"})
+        frame.add(channel).assign(size_t{16} * 16, 0.5f);
+    for (const char* name : {"lapse/frame_0001.png", "lapse/frame_0002.png"})
+        writeImage(out_.path(name), frame);
     run({"export", kGallery, "--layers", layers(), "--web", out_.path("page.html"), "--single-file",
-         "--exposure", "1.5"});
+         "--exposure", "1.5", "--timelapse", out_.path("lapse")});
     fs::create_directory(out_.path("apart"));
     fs::rename(out_.path("page.html"), out_.path("apart/page.html"));
     const json told = opened(out_.path("apart/page.html"), {{"viewport", {800, 600}}, {"keys", true}});
     EXPECT_EQ(told["before"]["lights"].size(), kLamps);
+    EXPECT_EQ(told["hides"], json({"#mixB", "#compare", "#reset", "#glow", "#measure"}))
+        << "which controls end a picture of the bake on its way";
+    EXPECT_EQ(told["oldCommand"], false) << "the command of another mix stays";
 }
 
 TEST_F(MixBoard, ExposureIsMeasuredAsAShotDoes) {

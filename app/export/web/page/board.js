@@ -12,6 +12,7 @@ relume.makeBoard = function (list, lights, changed, touched) {
     }
     const digits = (v) => String(Number(v.toPrecision(4)));
 
+    const middles = mixing.middles(lights);
     const rows = lights.map((light, i) => {
         const item = element('li', {});
         const name = element('label', { className: 'name', textContent: light.name, htmlFor: 'light' + i });
@@ -22,7 +23,7 @@ relume.makeBoard = function (list, lights, changed, touched) {
         const text = element('output', { htmlFor: 'light' + i });
         let shown = null;
         slider.addEventListener('input', () =>
-            changed(i, { intensity: mixing.atSlider(Number(slider.value), light.intensity), muted: false }));
+            changed(i, { intensity: mixing.atSlider(Number(slider.value), middles[i]), muted: false }));
         slider.addEventListener('focus', () => touched(i));
         slider.addEventListener('dblclick', () => changed(i, { intensity: light.intensity }));
         color.addEventListener('input', () => changed(i, { color: mixing.fromHex(color.value) }));
@@ -38,7 +39,7 @@ relume.makeBoard = function (list, lights, changed, touched) {
         return {
             show(state, shines) {
                 shown = state;
-                slider.value = String(Math.round(mixing.sliderOf(state.intensity, light.intensity)));
+                slider.value = String(Math.round(mixing.sliderOf(state.intensity, middles[i])));
                 const words = digits(state.intensity) + (light.unit ? ' ' + light.unit.replace('^2', '\u00b2') : '');
                 slider.setAttribute('aria-valuetext', words);
                 text.textContent = words;

@@ -64,29 +64,39 @@ relume.makePage = async function (at, data) {
         requestAnimationFrame(frame);
     }
 
-    // ---- what is shown ----
-    const board = relume.makeBoard(at('lights'), lights, (index, settings) => setLight(index, settings),
-        (index) => drawing.hold(side, index));
-    const mover = relume.makeMover(canvas, header.bounds, () => { at('frame').hidden = true; changed(); });
-    const press = (id, on) => at(id).setAttribute('aria-pressed', String(on));
-    function setLight(index, settings) {
-        mixes = mixes.map((mix, i) => (i === side ? mixing.changed(mix, index, settings) : mix));
-        board.show(mixes[side]);
-        at('command').hidden = true;
+    // What a control changes is seen, in place of a picture of the bake on its way.
+    function changedByUser() {
         at('frame').hidden = true;
         changed();
     }
+
+    // ---- what is shown ----
+    const board = relume.makeBoard(at('lights'), lights, (index, settings) => setLight(index, settings),
+        (index) => drawing.hold(side, index));
+    // A camera that moved is none of the list any more, so that the one it was can be chosen again.
+    const mover = relume.makeMover(canvas, header.bounds, () => {
+        at('camera').selectedIndex = -1;
+        changedByUser();
+    });
+    const press = (id, on) => at(id).setAttribute('aria-pressed', String(on));
+    function showMix() {
+        board.show(mixes[side]);
+        at('command').hidden = true; // it is of another mix
+        changedByUser();
+    }
+    function setLight(index, settings) {
+        mixes = mixes.map((mix, i) => (i === side ? mixing.changed(mix, index, settings) : mix));
+        showMix();
+    }
     function setMix(mix) {
         mixes = mixes.map((old, i) => (i === side ? mix : old));
-        board.show(mix);
-        changed();
+        showMix();
     }
     function setSide(next) {
         side = next;
         press('mixA', side === 0);
         press('mixB', side === 1);
-        board.show(mixes[side]);
-        changed();
+        showMix();
     }
     function setWipe(place) {
         wipe = place === null ? null : Math.min(Math.max(place, 0), 1);
@@ -96,13 +106,13 @@ relume.makePage = async function (at, data) {
             at('wipe').style.left = 100 * wipe + '%';
             at('wipe').setAttribute('aria-valuenow', String(Math.round(100 * wipe)));
         }
-        changed();
+        changedByUser();
     }
     function setExposure(value) {
         exposure = value;
         at('exposure').value = String(value);
         at('exposureText').textContent = (value >= 0 ? '+' : '\u2212') + Math.abs(value).toFixed(2) + ' EV';
-        changed();
+        changedByUser();
     }
     function measure() {
         fit();
@@ -111,11 +121,12 @@ relume.makePage = async function (at, data) {
     }
     function setCamera(camera) {
         mover.set(camera);
+        at('camera').selectedIndex = header.cameras.indexOf(camera);
     }
     function setGlow(on) {
         glow = on;
         press('glow', glow);
-        changed();
+        changedByUser();
     }
     function setFlies(on) {
         mover.setFlies(on);
@@ -186,7 +197,7 @@ relume.makePage = async function (at, data) {
     new ResizeObserver(changed).observe(canvas);
 
     fit();
-    mover.set(header.cameras[0]);
+    setCamera(header.cameras[0]);
     board.show(mixes[0]);
     const wanted = header.exposure ?? measure();
     at('exposure').min = String(Math.floor(wanted - 6));

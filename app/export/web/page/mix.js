@@ -33,6 +33,18 @@ relume.mix = (function () {
         return sum;
     }
 
+    // Returns the intensities in the middle of the sliders, which are the lights' own. A light that has 0 in the file gets the
+    // one at which it brings as much as all that shine there.
+    function middles(lights) {
+        const { luminance } = relume.maths;
+        const all = luminance(ambient(lights, weights(start(lights))));
+        return lights.map((light) => {
+            if (light.intensity > 0) return light.intensity;
+            const unit = luminance(light.mean.map((c, i) => c * light.color[i]));
+            return all > 0 && unit > 0 ? all / unit : 1;
+        });
+    }
+
     // A slider's middle is the light's own intensity, its end eight times that; it is fine where a light is dim.
     const kSteps = 200;
     const atSlider = (position, own) => own * (2 * position / kSteps) ** 3;
@@ -56,5 +68,5 @@ relume.mix = (function () {
         });
         return text + ' -o mixed.exr';
     }
-    return { start, weights, changed, ambient, kSteps, atSlider, sliderOf, toHex, fromHex, command };
+    return { start, weights, changed, ambient, middles, kSteps, atSlider, sliderOf, toHex, fromHex, command };
 })();
