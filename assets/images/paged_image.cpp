@@ -6,6 +6,7 @@
 #include "assets/base/portions.h"
 
 #include <spdlog/fmt/fmt.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <bit>
@@ -240,8 +241,29 @@ FloatImage sheetOf(const std::vector<FloatImage>& pages, const LightmapPages& la
     return sheet;
 }
 
+std::string lostInPng(const std::string& path, const FloatImage& image) {
+    if (!path.ends_with(".png")) return "";
+    constexpr float kCovered = 0.75f; // below it are texels that are filled, or empty
+    constexpr double kMany = 0.01;    // fewer are highlights
+    const std::vector<float>* coverage = image.find("coverage");
+    const std::vector<float>* colors[] = {image.find("R"), image.find("G"), image.find("B")};
+    double texels = 0, lost = 0;
+    for (size_t i = 0; i < size_t{image.width} * image.height; ++i) {
+        if (coverage && (*coverage)[i] < kCovered) continue;
+        texels += 1;
+        const bool above = std::any_of(std::begin(colors), std::end(colors),
+                                       [i](const auto* color) { return color && (*color)[i] > 1.0f; });
+        lost += above ? 1 : 0;
+    }
+    if (lost < kMany * texels || lost == 0) return "";
+    return fmt::format("{}: {:.0f} % of its texels are brighter than 1, the most that a .png holds, and were "
+                       "cut to it: write an .exr, which holds all",
+                       path, 100 * lost / texels);
+}
+
 void writeLightmap(const std::string& path, const FloatImage& image, ExrType type,
                    ExrCompression compression) {
+    if (const std::string lost = lostInPng(path, image); !lost.empty()) spdlog::warn("{}", lost);
     const LightmapPages pages = lightmapPagesOf(image);
     if (pages.count == 1) return writeImage(path, image, type, compression);
     const std::string whole = wholeOf(hashOf(image, 0));

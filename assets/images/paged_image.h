@@ -25,8 +25,11 @@ std::string pagePath(const std::string& path, uint32_t page);
 /// Returns the files of a lightmap that is written to `path`.
 std::vector<std::string> lightmapFiles(const std::string& path, const LightmapPages& pages);
 
-/// Writes an image as writeImage does, each page into a file of its own; no page takes its name before all
-/// are whole.
+/// Returns what somebody is to be told whose light a .png cuts off, as it holds none above 1; "" where that
+/// is less than a hundredth of the texels of surfaces, or where `path` ends otherwise.
+std::string lostInPng(const std::string& path, const FloatImage& image);
+/// Writes an image as writeImage does, with a warning where a .png loses light, each page into a file of its
+/// own; no page takes its name before all are whole.
 void writeLightmap(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float,
                    ExrCompression compression = kExrCompression);
 /// Does the same with layers, as writeLayeredExr does.

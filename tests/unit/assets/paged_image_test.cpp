@@ -2,11 +2,13 @@
 #include "assets/images/paged_image.h"
 
 #include "assets/base/error.h"
+#include "tests/log_capture.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 
 namespace relume {
@@ -78,6 +80,24 @@ TEST_F(PagedImage, OnePageIsAFileAsEver) {
     writeImage(path("b.exr"), image);
     EXPECT_EQ(bytesOf(path("a.exr")), bytesOf(path("b.exr")));
     EXPECT_EQ(readLightmapFile(path("a.exr")).planes, image.planes);
+}
+
+TEST_F(PagedImage, WhatAPngCutsOffIsTold) {
+    FloatImage image{100, 1, {}, {}, {}};
+    for (const char* channel : {"R", "G", "B", "coverage", "stderr"})
+        image.add(channel).assign(100, 1.0f);
+    image.planes[4][5] = 9.0f; // no light
+    EXPECT_EQ(lostInPng("a.png", image), "") << "1 is white";
+    std::fill_n(image.planes[1].begin(), 40, 1.5f);
+    EXPECT_EQ(lostInPng("a.exr", image), "");
+    EXPECT_EQ(lostInPng("a.png", image),
+              "a.png: 40 % of its texels are brighter than 1, the most that a .png "
+              "holds, and were cut to it: write an .exr, which holds all");
+    std::fill_n(image.planes[3].begin(), 20, 0.5f); // filled beside surfaces
+    EXPECT_NE(lostInPng("a.png", image).find("25 %"), std::string::npos);
+    const LogCapture log;
+    writeLightmap(path("a.png"), image);
+    EXPECT_NE(log.text().find("a.png: 25 % of its texels"), std::string::npos) << log.text();
 }
 
 TEST_F(PagedImage, PagesAreReadAsTheyWereWritten) {
