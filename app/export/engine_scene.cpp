@@ -51,6 +51,12 @@ std::array<float, 3> meanColor(const Primitive& primitive) {
     return {mean.r, mean.g, mean.b};
 }
 
+// Returns how much the viewer shows of a pane that transmits (shaders/gl/scene.frag).
+float shownOf(const Material& pane) {
+    constexpr float kLeast = 0.08f; // of one that lets all pass
+    return std::clamp(1.0f - pane.transmission, kLeast, 1.0f);
+}
+
 class MaterialSplit {
 public:
     MaterialSplit(const Scene& scene, const glm::vec3& ambient)
@@ -93,8 +99,10 @@ private:
     }
     Material shining(Material material, const glm::vec3& tint) const {
         const float albedo = 1.0f - engineMetallic(material.metallic, material.roughness);
+        // Engines add emission to what a pane transmits, whatever its share.
+        const float shown = material.pane && material.transmission > 0.0f ? shownOf(material) : 1.0f;
         if (material.emission == glm::vec3(0.0f)) {
-            material.emission = glm::vec3(material.baseColor) * tint * albedo * ambient_;
+            material.emission = glm::vec3(material.baseColor) * tint * (shown * albedo) * ambient_;
             material.emissionTexture = material.baseColorTexture;
         }
         return material;
@@ -147,6 +155,17 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
     giveEngineMetals(out.scene);
     dropUnusedTextures(out.scene);
     return out;
+}
+
+void blendWhatTransmits(Scene& scene) {
+    for (Material& material : scene.materials) {
+        if (!material.pane || material.transmission <= 0.0f) continue;
+        const float shown = shownOf(material);
+        material.emission /= shown; // as blending multiplies it by the alpha
+        material.baseColor.a = shown * (material.alphaMode == AlphaMode::Blend ? material.baseColor.a : 1.0f);
+        material.alphaMode = AlphaMode::Blend;
+        material.transmission = 0.0f;
+    }
 }
 
 std::vector<std::string> meshesWithThirdSet(const Scene& scene) {

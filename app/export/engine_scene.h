@@ -24,6 +24,9 @@ struct EngineScene {
 /// emission, as the viewer shows it; so do panes, which no bake lights.
 EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const glm::vec3& ambient);
 
+/// Makes panes that transmit ones that blend, for engines that do not show what is behind the former.
+void blendWhatTransmits(Scene& scene);
+
 /// Returns the names of meshes with a texture that reads TEXCOORD_2, each once: glTF asks engines to read two
 /// sets, of which the lightmap has one.
 std::vector<std::string> meshesWithThirdSet(const Scene& scene);

@@ -86,6 +86,12 @@ bool readsThirdSet(Engine engine) {
     return engine == Engine::Three || engine == Engine::Babylon || engine == Engine::Blender;
 }
 
+// Godot passes over KHR_materials_transmission, and PlayCanvas shows glass as black where no camera keeps
+// what is behind it.
+bool showsTransmission(Engine engine) {
+    return engine != Engine::Godot && engine != Engine::PlayCanvas;
+}
+
 Camera startCamera(const WorldMesh& mesh) {
     const ViewCamera view = goodView(mesh, kUsualAspect);
     Camera camera;
@@ -221,6 +227,7 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     ExportResult result;
     result.exposure = desc.exposure.value_or(exposureOf(light));
     EngineScene level = engineScene(scene, atlas, meanLight(lightmap, light));
+    if (!showsTransmission(desc.engine)) blendWhatTransmits(level.scene);
     const std::vector<FloatImage> pages = pagesOf(lightmap);
     if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(source.mesh));
     if (!readsThirdSet(desc.engine))

@@ -1,9 +1,11 @@
 // These tests open exported levels in the engines that run in a browser and hold their pictures against those
 // of `relume shot`.
+#include "assets/base/file_write.h"
 #include "assets/images/image_file.h"
 #include "renderer/draw_settings.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
+#include "tests/unit/glb_builder.h"
 #include "tests/web/web_page.h"
 
 #include <fmt/format.h>
@@ -214,6 +216,63 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Engines,
                          testing::Values(LevelCase{"gallery", "-1"}, LevelCase{"cornell_geom", "-1"},
                                          LevelCase{"atrium", "-1"}, LevelCase{"town", "-9"}),
                          [](const auto& one) { return std::string(one.param.scene); });
+
+// Makes a grey wall below an even sky; before it, on the left, a black square that the alpha of its vertex
+// colours masks away, and on the right a pane that transmits nine tenths.
+std::string seenThroughLevel(const TemporaryFolder& folder) {
+    using nlohmann::json;
+    test::GlbBuilder b;
+    const auto paint = [](float grey) {
+        return json{{"baseColorFactor", {grey, grey, grey, 1}}, {"metallicFactor", 0}};
+    };
+    b.json["materials"] = {{{"pbrMetallicRoughness", paint(0.5f)}},
+                           {{"pbrMetallicRoughness", paint(0.0f)}, {"alphaMode", "MASK"}},
+                           {{"pbrMetallicRoughness", paint(1.0f)},
+                            {"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}}};
+    b.json["extensionsUsed"] = {"KHR_materials_transmission"};
+    const json places = {{-4, -4, 0}, {-2.2, -1, 1}, {0.2, -1, 1}};
+    const double sizes[] = {8, 2, 2};
+    b.json["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.9}, {"znear", 0.1}}}}};
+    json nodes = json::array({b.node({{"camera", 0}, {"translation", {0, 0, 4}}})});
+    for (size_t i = 0; i < 3; ++i) {
+        json square = b.square();
+        square["attributes"]["TEXCOORD_0"] = b.squareUvs();
+        square["material"] = i;
+        const std::vector<float> clear = {1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0, 1, 1, 1, 0};
+        if (i == 1) square["attributes"]["COLOR_0"] = b.accessor(clear, "VEC4");
+        nodes.push_back(b.node(
+            {{"mesh", b.mesh(square)}, {"translation", places[i]}, {"scale", {sizes[i], sizes[i], 1}}}));
+    }
+    b.json["scenes"] = {
+        {{"nodes", nodes}, {"extras", {{"relume", {{"sky", {{"color", {1, 1, 1}}, {"intensity", 1}}}}}}}}};
+    const std::vector<uint8_t> bytes = b.bytes();
+    writeFileAtomically(folder.path("through.glb"), std::string(bytes.begin(), bytes.end()));
+    return folder.path("through.glb");
+}
+
+TEST(EngineSurfaces, WhatIsBehindHolesAndGlassIsSeen) {
+    if (const std::string reason = whyNoPages(); !reason.empty()) GTEST_SKIP() << reason;
+    const TemporaryFolder folder;
+    const std::string scene = seenThroughLevel(folder), lightmap = folder.path("l.exr");
+    relume({"bake", scene, "-o", lightmap, "--size", "64", "--samples", "64"});
+    relume({"shot", scene, "--lightmap", lightmap, "-o", folder.path("shot.png"), "--size",
+            fmt::format("{}x{}", kWidth, kHeight), "--tone", "none", "--exposure", "0"});
+    const FloatImage right = readImage(folder.path("shot.png"));
+    for (const char* engine : {"three", "babylon", "playcanvas"}) {
+        const std::string level = folder.path(engine);
+        relume({"export", scene, "--lightmap", lightmap, "--for", engine, "-o", level, "--exposure", "0"});
+        FloatImage picture = pictureOfPage(level, "index.html#tone=linear", kWidth, kHeight);
+        ASSERT_FALSE(picture.planes.empty()) << engine;
+        if (engine == std::string("playcanvas")) picture = decodedByPower(picture);
+        for (const double column : {0.27, 0.73}) { // the hole, the glass
+            const size_t at = size_t{kWidth} * (kHeight / 2) + size_t(column * kWidth);
+            for (size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(srgbFromLinear(double(picture.planes[c][at])),
+                            srgbFromLinear(double(right.planes[c][at])), 0.04)
+                    << engine << " at " << column;
+        }
+    }
+}
 
 } // namespace
 } // namespace relume

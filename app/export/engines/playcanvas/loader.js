@@ -33,6 +33,11 @@ export async function loadLevel(pc, app, folder) {
 @MANY@    const [, ...lightmaps] = await Promise.all([loaded, ...Array.from(
 @MANY@        { length: @PAGES@ }, (_, page) => loadHalfFloats(pc, app.graphicsDevice, `${folder}lightmap.${page}.ktx2`))]);
     for (const { resource: texture } of asset.resource.textures) texture.anisotropy = 16;
+    for (const { resource: material } of asset.resource.materials) { // in glTF the alpha of COLOR_0 counts, too
+        material.opacityVertexColor = true;
+        material.opacityVertexColorChannel = 'a';
+        material.update();
+    }
 @ONE@    for (const material of lit) {
 @ONE@        material.lightMap = lightmap;
 @MANY@    for (const [material, page] of lit) {
