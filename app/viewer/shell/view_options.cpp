@@ -78,7 +78,9 @@ void addViewOptions(CLI::App& command, ViewOptions& o) {
     command.add_flag("--watch,!--no-watch", o.watch,
                      "Follow the scene's file, and those that belong to it, when another program writes them "
                      "(default: on)");
-    command.add_option("--window-size", o.window, "Size of the window (default: as last time)")
+    command
+        .add_option("--window-size", o.window,
+                    "Size of the window, times the monitor's scale (default: as last time)")
         ->type_name("WxH");
     command.add_option("--camera", o.camera, "The scene's camera of this name (default: its first one)");
     command.add_flag("--log-actions", o.logActions,

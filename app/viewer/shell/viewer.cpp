@@ -89,10 +89,11 @@ LiveBake& Viewer::startBake() {
 Viewer::~Viewer() {
     bake_->setWake({});
     bake_->stop(); // before what it reads and writes goes
-    const glm::uvec2 extent = window_.extent();
-    if (extent.x > 0 && extent.y > 0 && desc_.width == 0) {
-        preferences_.values().width = extent.x;
-        preferences_.values().height = extent.y;
+    const glm::uvec2 pixels = window_.size();
+    if (pixels.x > 0 && pixels.y > 0 && desc_.width == 0) {
+        const glm::uvec2 kept = rememberedWindow(pixels, window_.contentScale());
+        preferences_.values().width = kept.x;
+        preferences_.values().height = kept.y;
     }
     savePreferences();
 }

@@ -190,6 +190,15 @@ void Preferences::pushRecent(const std::string& path) {
     if (recent.size() > kMostRecent) recent.resize(kMostRecent);
 }
 
+glm::uvec2 rememberedWindow(const glm::uvec2& pixels, float contentScale) {
+    const auto edge = [&](uint32_t value) {
+        const float asked = contentScale > 0 ? static_cast<float>(value) / contentScale : 0.0f;
+        return static_cast<uint32_t>(std::lround(
+            std::clamp(asked, static_cast<float>(kLeastWindowEdge), static_cast<float>(kMostWindowEdge))));
+    };
+    return {edge(pixels.x), edge(pixels.y)};
+}
+
 std::string preferencesPath() {
     const char* config = std::getenv("XDG_CONFIG_HOME");
     const char* home = std::getenv("HOME");

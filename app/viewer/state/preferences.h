@@ -25,7 +25,7 @@ struct Preferences {
 
     std::vector<std::string> recent;                        // scenes, absolute paths, the newest first
     std::map<std::string, std::vector<Bookmark>> bookmarks; // by a scene's absolute path
-    uint32_t width = 1280, height = 800;                    // of the window [screen coordinates]
+    uint32_t width = 1280, height = 800;                    // of the window [screen coordinates] at scale 1
     float panelWidth = 340;                                 // [screen coordinates] at scale 1
     float uiScale = 1;                                      // beside the monitor's own scale
     bool vsync = true, caption = false;
@@ -40,6 +40,11 @@ struct Preferences {
     /// Keeps a camera for a scene, and returns its name, which no other of that scene has.
     std::string addBookmark(const std::string& scene, const ViewCamera& camera);
 };
+
+/// Returns the size by which a window of so many pixels is asked for again [screen coordinates at scale 1]. A
+/// window is made larger by its monitor's scale, which its pixels have already. A tiny one is remembered as
+/// the smallest that the file may hold.
+glm::uvec2 rememberedWindow(const glm::uvec2& pixels, float contentScale);
 
 /// Returns the path by which bookmarks of a scene are kept.
 std::string absolutePath(const std::string& path);

@@ -40,7 +40,7 @@ public:
 class Window {
 public:
     struct Desc {
-        uint32_t width = 1280, height = 800; // [screen coordinates]
+        uint32_t width = 1280, height = 800; // [screen coordinates], of which the monitor's scale makes more
         std::string title;
         bool debug = false; // the driver checks more and tells more, and is slower
     };

@@ -25,6 +25,15 @@ protected:
     const TemporaryFolder folder_;
 };
 
+// A window that is made 2.5 times as large by its monitor's scale grew by that at each start.
+TEST(Preferences, AWindowIsRememberedWithoutItsMonitorsScale) {
+    EXPECT_EQ(rememberedWindow({3200, 2000}, 2.5f), glm::uvec2(1280, 800));
+    EXPECT_EQ(rememberedWindow({1280, 800}, 1.0f), glm::uvec2(1280, 800));
+    EXPECT_EQ(rememberedWindow({200, 100000}, 1.0f), glm::uvec2(kLeastWindowEdge, kMostWindowEdge))
+        << "what the file may hold";
+    EXPECT_EQ(rememberedWindow({800, 600}, 0.0f), glm::uvec2(kLeastWindowEdge));
+}
+
 TEST_F(PreferencesFile, ComesBackAsItWas) {
     Preferences before;
     before.width = 1000;
