@@ -80,6 +80,13 @@ bool cut(Vec& value, float most) {
     return value != before;
 }
 
+/// Tells whether the axes of a transform are numbers.
+bool isTurned(const glm::mat4& transform) {
+    for (int column = 0; column < 3; ++column)
+        if (!std::isfinite(glm::dot(transform[column], glm::vec4(1.0f)))) return false;
+    return true;
+}
+
 std::string tooFar(const char* thing) {
     return fmt::format("its {} is more than {:g} m and is cut to that", thing, kFarthest);
 }
@@ -179,13 +186,17 @@ std::vector<std::string> limitSky(Sky& sky) {
 void limitEdits(const Scene& scene, const SceneEdits& before, SceneEdits& edits) {
     for (size_t i = 0; i < edits.lights.size(); ++i) {
         Light& light = edits.lights[i];
+        light.color = glm::min(light.color, glm::vec3(kBrightest)); // an infinite one times 0 is no number
         limitLight(light);
+        if (!isTurned(light.transform))
+            light.transform = i < before.lights.size() ? before.lights[i].transform : glm::mat4(1.0f);
         for (int c = 0; c < 3; ++c)
             light.transform[3][c] = std::clamp(light.transform[3][c], -kFarthest, kFarthest);
     }
     for (Material& material : edits.materials)
         limitMaterial(material);
     cut(edits.sky.radiance, kBrightest);
+    if (!std::isfinite(edits.sky.rotation)) edits.sky.rotation = before.sky.rotation;
     for (size_t i = 0; i < edits.placements.size(); ++i) {
         glm::mat4& transform = edits.placements[i].transform;
         if (transform == before.placements[i].transform) continue;

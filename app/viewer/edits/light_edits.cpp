@@ -2,6 +2,7 @@
 
 #include "assets/model/light_names.h"
 #include "assets/base/error.h"
+#include "assets/model/scene_limits.h"
 
 #include <algorithm>
 #include <cctype>
@@ -70,6 +71,20 @@ float wantedIrradiance(const LightSpot& spot) {
 }
 
 } // namespace
+
+glm::vec3 typedColour(const glm::vec3& colour) {
+    return glm::clamp(colour, 0.0f, kBrightest);
+}
+
+float typedAngle(float degrees) {
+    constexpr float kTurn = 360.0f;
+    if (!std::isfinite(degrees)) return 0.0f;
+    return std::abs(degrees) > kTurn ? std::fmod(degrees, kTurn) : degrees;
+}
+
+glm::vec3 typedAngles(const glm::vec3& degrees) {
+    return {typedAngle(degrees.x), typedAngle(degrees.y), typedAngle(degrees.z)};
+}
 
 EmissionParts splitEmission(const glm::vec3& emission) {
     EmissionParts parts;

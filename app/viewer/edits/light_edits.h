@@ -21,6 +21,12 @@ void setPower(SceneEdits& edits, const LightKey& key, const LightPower& power);
 const char* lightTypeOf(const SceneEdits& edits, const LightKey& key);
 const char* lightUnitOf(const SceneEdits& edits, const LightKey& key);
 
+/// Returns a colour as it may be typed: each channel from 0 to the brightest that there may be.
+glm::vec3 typedColour(const glm::vec3& colour);
+/// Returns an angle as it may be typed, without its whole turns [degrees]; 0 for one that is infinite.
+float typedAngle(float degrees);
+glm::vec3 typedAngles(const glm::vec3& degrees);
+
 /// An emission as a colour of full brightness and a strength [cd/m^2].
 struct EmissionParts {
     glm::vec3 colour{1.0f};

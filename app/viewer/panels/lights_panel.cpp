@@ -57,7 +57,7 @@ public:
 
 bool drawColour(const char* label, glm::vec3& colour, ImGuiColorEditFlags flags) {
     const bool changed = ImGui::ColorEdit3(label, &colour.x, flags | ImGuiColorEditFlags_Float);
-    colour = glm::max(colour, 0.0f);
+    if (changed) colour = typedColour(colour);
     return changed;
 }
 
@@ -283,7 +283,10 @@ void LightsPanel::drawAngles(const PanelContext& context, const LightSource& sou
     anglesOf_ = source.key;
     const bool changed =
         ImGui::DragFloat3("Angles [deg]", &angles_.x, ui::kAngleStep, -360.0f, 360.0f, "%.1f");
-    if (changed) transform = withAngles(transform, angles_);
+    if (changed) {
+        angles_ = typedAngles(angles_);
+        transform = withAngles(transform, angles_);
+    }
     drawNumber(editor, "Rotation", "Angles [deg]", changed);
     ui::tip("Turn about the upright, tilt (-90: down), roll");
 }
@@ -376,7 +379,7 @@ void LightsPanel::drawInspector(const PanelContext& context) {
     float rotation = glm::degrees(edits.sky.rotation);
     const bool turned =
         ImGui::DragFloat("Rotation [deg]", &rotation, ui::kAngleStep, -360.0f, 360.0f, "%.1f");
-    if (turned) edits.sky.rotation = glm::radians(rotation);
+    if (turned) edits.sky.rotation = glm::radians(typedAngle(rotation));
     drawNumber(editor, "Rotation", "Rotation [deg]", turned);
     ImGui::TextWrapped("%s", edits.sky.file.empty() ? "No picture: one radiance all around"
                                                     : ("Picture " + edits.sky.file).c_str());

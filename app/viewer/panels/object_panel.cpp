@@ -1,5 +1,6 @@
 #include "app/viewer/panels/object_panel.h"
 
+#include "app/viewer/edits/light_edits.h"
 #include "app/viewer/edits/object_edits.h"
 #include "app/viewer/panels/widgets.h"
 #include "assets/model/scene_limits.h"
@@ -39,7 +40,10 @@ void ObjectPanel::drawAngles(const PanelContext& context, uint32_t instance, con
     anglesOf_ = instance;
     const bool changed =
         ImGui::DragFloat3("Rotation [deg]", &angles_.x, ui::kAngleStep, -360.0f, 360.0f, "%.1f");
-    if (changed) transform = turnedTo(transform, angles_);
+    if (changed) {
+        angles_ = typedAngles(angles_);
+        transform = turnedTo(transform, angles_);
+    }
     follow(context, "Rotation [deg]", "Rotation of " + name, changed ? &next : nullptr);
     ui::tip("Turn about the upright, tilt, roll");
 }

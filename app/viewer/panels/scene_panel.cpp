@@ -93,7 +93,7 @@ void ScenePanel::drawMaterial(const PanelContext& context, size_t index) {
                       0.0f, kMost, "%.4g", ImGuiSliderFlags_AlwaysClamp);
     ended |= ImGui::IsItemDeactivatedAfterEdit();
     if (changed) {
-        material.emission = glm::max(parts.colour, 0.0f) * parts.strength;
+        material.emission = typedColour(parts.colour) * parts.strength;
         context.edit("Emission of " + name, next);
         context.sceneChanged();
     }

@@ -248,6 +248,24 @@ TEST(SceneLimits, EditsOfAViewerStayWithinThem) {
     EXPECT_EQ(edits.placements, moved.placements);
 }
 
+TEST(SceneLimits, EditsThatAreNoNumbersLeaveAngles) {
+    Scene scene = test::sceneOf(test::square());
+    scene.lights.emplace_back();
+    const SceneEdits before = editsOf(scene);
+    SceneEdits edits = before;
+    edits.lights[0].transform[1] = glm::vec4(kNan, 0, 0, 0);
+    edits.lights[0].color.g = kInfinite;
+    edits.lights[0].intensity = 0.5f;
+    edits.sky.rotation = kInfinite;
+    edits.lights.push_back(edits.lights[0]);
+    limitEdits(scene, before, edits);
+    EXPECT_EQ(edits.lights[0].transform, before.lights[0].transform);
+    EXPECT_EQ(edits.lights[0].color.g, kBrightest);
+    EXPECT_EQ(edits.lights[0].intensity, 0.5f);
+    EXPECT_EQ(edits.lights[1].transform, glm::mat4(1.0f)) << "one that was not there before";
+    EXPECT_EQ(edits.sky.rotation, before.sky.rotation);
+}
+
 TEST(SceneLimits, SumsThatAreNotFiniteAreAnError) {
     EXPECT_NO_THROW(requireFiniteLight(1e30, 1e300));
     EXPECT_THROW(requireFiniteLight(kNan, 1.0), Error);

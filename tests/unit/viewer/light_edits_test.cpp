@@ -1,9 +1,11 @@
 #include "app/viewer/edits/light_edits.h"
 #include "app/viewer/picture/light_overlay.h"
+#include "assets/model/scene_limits.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -50,6 +52,15 @@ TEST(LightEdits, PreviewLightIsKeptOnRequest) {
     EXPECT_FALSE(hasPreview(document.edits));
     EXPECT_EQ(lights[0].name, "Sun");
     EXPECT_EQ(lights[1].name, "Lamp 2") << "another name stays";
+}
+
+// A field takes 1e39, which is infinite.
+TEST(LightEdits, WhatIsTypedBecomesANumberOfUse) {
+    constexpr float kInfinite = std::numeric_limits<float>::infinity();
+    EXPECT_EQ(typedColour({-1.0f, kInfinite, 0.5f}), glm::vec3(0.0f, kBrightest, 0.5f));
+    EXPECT_EQ(typedAngles({kInfinite, -kInfinite, std::nanf("")}), glm::vec3(0.0f));
+    EXPECT_EQ(typedAngles({-30.0f, 360.0f, 400.0f}), glm::vec3(-30.0f, 360.0f, 40.0f));
+    EXPECT_EQ(typedAngle(-725.0f), -5.0f);
 }
 
 TEST(LightEdits, PowerGoesWhereTheLightHasIt) {
