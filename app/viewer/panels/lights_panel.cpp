@@ -7,10 +7,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_stdlib.h>
 
 namespace relume {
 namespace {
@@ -296,13 +296,13 @@ void LightsPanel::drawAngles(const PanelContext& context, const LightSource& sou
 void LightsPanel::drawName(const PanelContext& context, const LightSource& source) {
     LightEditor editor(context, source);
     Light& light = editor.lamp();
-    if (!naming_) std::snprintf(name_.data(), name_.size(), "%s", light.name.c_str());
+    if (!naming_) name_ = light.name;
     ImGui::PushID(static_cast<int>(source.key.index)); // another light has a field of its own
-    ImGui::InputText("Name", name_.data(), name_.size());
+    ImGui::InputText("Name", &name_);
     ui::mark("Name", true);
     naming_ = ImGui::IsItemActive();
-    if (ImGui::IsItemDeactivatedAfterEdit() && name_[0] != '\0' && light.name != name_.data()) {
-        light.name = name_.data();
+    if (ImGui::IsItemDeactivatedAfterEdit() && !name_.empty() && light.name != name_) {
+        light.name = name_;
         editor.follow("Name", true);
         context.endEdit();
     }

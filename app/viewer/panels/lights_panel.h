@@ -1,7 +1,5 @@
 #pragma once
 
-#include <array>
-
 #include <string>
 
 #include "app/viewer/panels/panel.h"
@@ -27,8 +25,8 @@ private:
     // one.
     glm::vec3 angles_{0.0f}; // [degrees]
     LightKey anglesOf_;
-    std::array<char, 128> name_{}; // as it is typed
-    bool naming_ = false;          // the field was active when last drawn
+    std::string name_;    // as it is typed
+    bool naming_ = false; // the field was active when last drawn
 };
 
 } // namespace relume
