@@ -25,12 +25,26 @@ std::string withoutSlash(std::string path) {
     return path;
 }
 
-// Completes the text when Tab is pressed in the field, as far as it can only go on one way.
-int onCompletion(ImGuiInputTextCallbackData* data) {
-    const PathCompletion& completion = *static_cast<const PathCompletion*>(data->UserData);
-    if (completion.matches.empty()) return 0;
+/// What the field's callback reads and changes.
+struct Field {
+    const PathCompletion& completion;
+    bool& toEnd; // the cursor is to go there
+};
+
+// Completes the text when Tab is pressed in the field, as far as it can only go on one way. Behind a folder
+// that was chosen one types on.
+int onField(ImGuiInputTextCallbackData* data) {
+    const Field& field = *static_cast<const Field*>(data->UserData);
+    if (data->EventFlag == ImGuiInputTextFlags_CallbackAlways) {
+        if (!field.toEnd) return 0;
+        field.toEnd = false;
+        data->CursorPos = data->BufTextLen;
+        data->ClearSelection();
+        return 0;
+    }
+    if (field.completion.matches.empty()) return 0;
     data->DeleteChars(0, data->BufTextLen);
-    data->InsertChars(0, completion.text.c_str());
+    data->InsertChars(0, field.completion.text.c_str());
     return 0;
 }
 
@@ -41,7 +55,8 @@ void FileDialog::open(Desc desc) {
     typed_ = desc_.path;
     listed_.clear();
     open_ = focus_ = true;
-    asks_ = false;
+    toEnd_ = asks_ = false;
+    ++opened_;
     complete();
 }
 
@@ -58,7 +73,7 @@ void FileDialog::list(const std::vector<std::string>& paths, const char* id) {
     for (const std::string& path : paths) {
         if (!ui::selectable(path.c_str())) continue;
         typed_ = path;
-        focus_ = true;
+        focus_ = toEnd_ = true;
         asks_ = false;
         if (!desc_.saves && !isFolder(path)) finish();
     }
@@ -71,7 +86,7 @@ void FileDialog::finish() {
     const bool inside = path.ends_with('/');
     if (isFolder(path) && !(desc_.folder && inside)) { // goes on inside
         typed_ = inside ? path : path + "/";
-        focus_ = true;
+        focus_ = toEnd_ = true;
         return;
     }
     if (desc_.saves && !asks_ && freePath(path) != path) {
@@ -95,9 +110,15 @@ void FileDialog::draw() {
     if (focus_) ImGui::SetKeyboardFocusHere();
     focus_ = false;
     ImGui::SetNextItemWidth(-1);
-    const bool entered = ImGui::InputText(
-        "##path", &typed_, ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion,
-        onCompletion, &completion_);
+    Field field{completion_, toEnd_};
+    ImGui::PushID(opened_); // ImGui would select what was selected of the path before
+    const bool entered =
+        ImGui::InputText("##path", &typed_,
+                         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
+                             ImGuiInputTextFlags_CallbackAlways,
+                         onField, &field);
+    ui::mark("Path", false);
+    ImGui::PopID();
     if (typed_ != listed_) {
         complete();
         asks_ = false;

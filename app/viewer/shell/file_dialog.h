@@ -31,6 +31,8 @@ private:
 
     Desc desc_;
     bool open_ = false, focus_ = false, asks_ = false;
+    bool toEnd_ = false;         // the cursor goes behind the path
+    int opened_ = 0;             // how often
     std::string typed_, listed_; // listed_: the text that `completion_` is about
     PathCompletion completion_;
 };
