@@ -28,6 +28,20 @@ constexpr std::array kFonts = {
     "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
 };
 
+// Names of lights, objects and files may be in any language: the fonts above have these letters. Signs of
+// Chinese, Japanese and Korean are in none of them, and would take tens of megabytes.
+constexpr std::array<ImWchar, 17> kLetters = {
+    0x0020, 0x024F, // Latin
+    0x0370, 0x03FF, // Greek
+    0x0400, 0x052F, // Cyrillic
+    0x0531, 0x058F, // Armenian
+    0x1E00, 0x1EFF, // Latin, as in Vietnamese
+    0x2010, 0x2044, // dashes, quotation marks
+    0x20A0, 0x20BF, // currencies
+    0x2100, 0x214F, // letters as signs
+    0,
+};
+
 void loadFont(float scale) {
     ImGuiIO& io = ImGui::GetIO();
     io.Fonts->Clear();
@@ -35,7 +49,8 @@ void loadFont(float scale) {
     for (const char* path : kFonts) {
         if (!std::filesystem::exists(path, code)) continue;
         const auto add = [&](float share) {
-            return io.Fonts->AddFontFromFileTTF(path, std::round(share * kFontPixels * scale)) != nullptr;
+            return io.Fonts->AddFontFromFileTTF(path, std::round(share * kFontPixels * scale), nullptr,
+                                                kLetters.data()) != nullptr;
         };
         if (add(1.0f) && add(kTitle)) return;
         io.Fonts->Clear();
