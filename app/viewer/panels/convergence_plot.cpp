@@ -1,5 +1,7 @@
 #include "app/viewer/panels/convergence_plot.h"
 
+#include "app/viewer/state/fitting_text.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -83,12 +85,17 @@ void drawConvergencePlot(const std::vector<ConvergencePoint>& history, double ai
         list->AddLine(axes.at(0, localAim), axes.at(axes.seconds, localAim), paleGoal);
     drawCurve(*list, local, paleCurve);
     drawCurve(*list, points, curve);
-    list->AddText({axes.low.x, axes.high.y + 0.1f * line}, text,
-                  local.empty() ? "error left over seconds of solving"
-                                : "error and, paler, local error left over seconds");
-    const std::string end = fmt::format("{:.3g} s", axes.seconds);
-    list->AddText({axes.high.x - ImGui::CalcTextSize(end.c_str()).x, axes.high.y + 0.1f * line}, text,
-                  history.empty() ? "" : end.c_str());
+    const std::string end = history.empty() ? "" : fmt::format("{:.3g} s", axes.seconds);
+    const float endWidth = ImGui::CalcTextSize(end.c_str()).x, gap = end.empty() ? 0.0f : line;
+    const std::vector<std::string> captions =
+        local.empty() ? std::vector<std::string>{"error left over seconds of solving", "error left", "error"}
+                      : std::vector<std::string>{"error and, paler, local error left over seconds",
+                                                 "error; paler: local error", "error; local error", "error"};
+    const std::string caption = firstThatFits(captions, [&](const std::string& candidate) {
+        return axes.low.x + ImGui::CalcTextSize(candidate.c_str()).x + gap + endWidth <= axes.high.x;
+    });
+    list->AddText({axes.low.x, axes.high.y + 0.1f * line}, text, caption.c_str());
+    list->AddText({axes.high.x - endWidth, axes.high.y + 0.1f * line}, text, end.c_str());
 }
 
 } // namespace relume

@@ -18,6 +18,9 @@ bool BakeControl::busy() const {
 
 void BakeControl::perform(Action action) {
     if (session_.scene() == nullptr) return feedback_.note("there is no scene to bake", true);
+    const bool done = status_.phase == BakeStatus::Phase::Done && status_.bake == session_.newestBake();
+    if (action != Action::Reset && done)
+        return feedback_.note("the bake is done: an edit or Reset (Ctrl+R) begins anew");
     switch (action) {
     case Action::MakePass:
         return bake_.makePass();

@@ -7,6 +7,7 @@
 #include "app/viewer/panels/widgets.h"
 #include "app/viewer/picture/shown_lights.h"
 #include "app/viewer/state/file_choices.h"
+#include "app/viewer/state/fitting_text.h"
 #include "app/viewer/state/views.h"
 
 #include <algorithm>
@@ -156,6 +157,32 @@ void drawMessages(const Messages& messages, const PictureArea& area) {
     ImGui::End();
 }
 
+// Draws all keys, in as many columns as there is room for.
+void drawKeys() {
+    std::vector<std::pair<std::string, std::string>> keys;
+    for (const MouseHint& hint : mouseHints())
+        keys.emplace_back(hint.how, hint.what);
+    for (const Shortcut& shortcut : shortcuts())
+        if (shortcut.key != 0) keys.emplace_back(keyText(shortcut), shortcut.name);
+    const auto width = [](const std::string& text) { return ImGui::CalcTextSize(text.c_str()).x; };
+    std::vector<PairWidth> widths;
+    for (const auto& [key, meaning] : keys)
+        widths.push_back({width(key), width(meaning)});
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float room = ImGui::GetContentRegionAvail().x - style.ScrollbarSize;
+    const size_t pairs = pairsInARow(widths, 2, 2 * style.CellPadding.x, room);
+    if (!ImGui::BeginTable("keys", static_cast<int>(2 * pairs),
+                           ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg))
+        return;
+    for (const auto& [key, meaning] : keys) {
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(key.c_str());
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(meaning.c_str());
+    }
+    ImGui::EndTable();
+}
+
 } // namespace
 
 std::string statusLine(const BakeStatus& status) {
@@ -220,11 +247,17 @@ float Ui::drawStatus(const PanelContext& context) {
     }
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(statusLine(status).c_str());
-    const std::string right = fmt::format("{}, {:+.1f} EV, {:.1f} ms",
-                                          viewTitle(context.view, context.lights, context.status.groups),
-                                          context.exposure, context.figures.total);
-    const float width = ImGui::CalcTextSize(right.c_str()).x;
-    ImGui::SameLine(std::max(window.x - width - ImGui::GetFontSize(), 0.0f));
+    const std::string view = viewTitle(context.view, context.lights, context.status.groups);
+    const std::string exposure = fmt::format("{:+.1f} EV", context.exposure),
+                      time = fmt::format("{:.1f} ms", context.figures.total);
+    const float left = ImGui::GetItemRectMax().x, margin = ImGui::GetFontSize();
+    const auto begin = [&](const std::string& text) {
+        return window.x - ImGui::CalcTextSize(text.c_str()).x - margin;
+    };
+    const std::string right =
+        firstThatFits({view + ", " + exposure + ", " + time, exposure + ", " + time, time},
+                      [&](const std::string& text) { return begin(text) >= left + margin; });
+    ImGui::SameLine(std::max(begin(right), 0.0f));
     ImGui::TextUnformatted(right.c_str());
     ImGui::End();
     ImGui::PopStyleColor();
@@ -296,22 +329,7 @@ void Ui::drawHelp() {
     ImGui::SetNextWindowSize({std::min(60.0f * ImGui::GetFontSize(), window.x),
                               std::min(40.0f * ImGui::GetFontSize(), 0.9f * window.y)});
     ImGui::Begin("All keys", &help_, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
-    if (ImGui::BeginTable("keys", 4, ImGuiTableFlags_SizingStretchProp | ImGuiTableFlags_RowBg)) {
-        for (const MouseHint& hint : mouseHints()) {
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(hint.how);
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(hint.what);
-        }
-        for (const Shortcut& shortcut : shortcuts()) {
-            if (shortcut.key == 0) continue;
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(keyText(shortcut).c_str());
-            ImGui::TableNextColumn();
-            ImGui::TextUnformatted(shortcut.name.c_str());
-        }
-        ImGui::EndTable();
-    }
+    drawKeys();
     ImGui::End();
 }
 
