@@ -82,7 +82,7 @@ void BakeLoop::run() {
         } catch (const std::exception& error) {
             fail(error.what());
         }
-        report(status_.phase != Phase::Baking);
+        if (!triesWaiting()) report(status_.phase != Phase::Baking);
     }
     endExports(orders);
     giveUp();
@@ -93,6 +93,11 @@ void BakeLoop::run() {
 bool BakeLoop::steps() const {
     const bool wanted = waiting_ && !(exports_.empty() && engineExports_.empty());
     return status_.phase == Phase::Baking || (status_.phase == Phase::Paused && wanted);
+}
+
+// Tells whether a bake failed while an edit waited for it: what is newer than the failure may mend it.
+bool BakeLoop::triesWaiting() const {
+    return waiting_ && status_.phase == Phase::Failed;
 }
 
 void BakeLoop::openDevice() {
@@ -143,7 +148,7 @@ bool BakeLoop::takeOrders(BakeOrders& orders) {
                o.batchMs || o.seenTiles || o.inspect || o.probes || o.balls || o.voxels ||
                !o.exports.empty() || !o.engineExports.empty();
     };
-    if (!steps()) {
+    if (!steps() && !triesWaiting()) {
         if (maps_ && (maps_->owes() || balls_->owes()))
             desk_.news.wait_for(lock, kSlotWait, something);
         else
@@ -443,14 +448,15 @@ void BakeLoop::endMaps() {
     balls_->forget();
 }
 
-// Gives up a bake that cannot go on; what is shown stays.
+// Gives up a bake that cannot go on; what is shown stays. An edit that waits keeps its scene, and exports
+// wait for what it makes.
 void BakeLoop::fail(const std::string& message) {
     spdlog::error("{}", message);
     status_.phase = Phase::Failed;
     status_.doing = message;
     giveUp();
+    if (triesWaiting()) return;
     letGo();
-    waiting_.reset(); // nobody keeps its scene any more
     refuseExports("there is no bake: begin one");
 }
 

@@ -45,6 +45,7 @@ private:
     void onPhase(const char* phase, double done = -1.0);
     void steer(const BakeOrders& orders);
     bool steps() const;
+    bool triesWaiting() const;
     void stepSolver();
     void logEnd();
     void applySeen();

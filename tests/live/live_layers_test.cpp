@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <vector>
 
 namespace relume {
@@ -129,6 +130,39 @@ TEST_F(LiveBakeTest, AnEditOfTheFirstPreparationHidesNoFirstLight) {
         EXPECT_FALSE(screen_.map()->complete) << "direct light comes before it has bounced";
     }
     ASSERT_TRUE(untilShown());
+}
+
+// The edit that waits for a rest is newer than what a step fails by, and takes it away.
+TEST_F(LiveBakeTest, AnEditThatWaitsIsBakedAfterAStepThatFails) {
+    BakeSettings settings = quickSettings();
+    settings.solver.layers.on = true;
+    start(settings, false);
+    ASSERT_TRUE(untilShown());
+    const SceneEdits before = edits_;
+    for (Material& material : edits_.materials)
+        material.emission = glm::vec3(0.0f);
+    edits_.lights.push_back({.name = "Bulb", .type = LightType::Spot});
+    edits_.lights.back().transform[3] = glm::vec4(0.0f, 1.5f, 0.5f, 1.0f);
+    edits_.lights.back().transform[2].x = std::numeric_limits<float>::quiet_NaN(); // so is its light
+    bake_.setBatchMs(1);
+    start(settings);
+    bake_.pause();
+    ASSERT_TRUE(untilPhase(BakeStatus::Phase::Paused));
+    const double seconds = bake_.status().progress.seconds;
+    bake_.step(); // into the bulb's layer
+    ASSERT_TRUE(until([&] {
+        const BakeStatus status = bake_.status();
+        return status.progress.seconds > seconds && status.phase == BakeStatus::Phase::Paused;
+    }));
+    edits_ = before;
+    edits_.placements.back().transform[3].x += 0.01f; // objects wait until the bake is at rest
+    bake_.setBatchMs(8);
+    testing::internal::CaptureStdout();
+    start(settings);
+    const bool shown = untilShown();
+    const std::string told = testing::internal::GetCapturedStdout();
+    ASSERT_TRUE(shown) << told;
+    EXPECT_NE(told.find("too bright"), std::string::npos) << "no step failed: " << told;
 }
 
 TEST_F(LiveBakeTest, TellsALayerAtTexelsAndAloneAsAMap) {
