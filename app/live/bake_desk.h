@@ -98,7 +98,8 @@ struct BakeStatus {
     double secondsLeft = -1;  // until the error asked for, judged by how it fell so far; negative: unknown
     std::vector<ConvergencePoint> history;
     std::string device, tracer, display; // what was chosen, with the reason
-    uint64_t deviceBytes = 0;            // device memory in use, 0: unknown
+    uint64_t deviceBytes = 0;            // device memory in use, by all programs, 0: unknown
+    uint64_t bakeBytes = 0;              // of it, by this bake
     uint64_t hostBytes = 0;              // of the machine's memory, which the device reads and writes
     uint64_t ballBytes = 0;              // of these, what lights the ball and the grid of probes
     uint32_t validationMessages = 0;

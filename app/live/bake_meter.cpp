@@ -66,6 +66,7 @@ void BakeMeter::measure(BakeStatus& status, Solver& solver, const vk::Device& de
     rays_.add(solver.progress().seconds, status.rays);
     status.raysPerSecond = rays_.perSecond();
     status.deviceBytes = device.usedMemory();
+    status.bakeBytes = device.ledger().deviceBytes();
     status.hostBytes = device.ledger().bytes() - device.ledger().deviceBytes();
     status.validationMessages = device.validationMessages();
 }

@@ -7,6 +7,8 @@
 #include "assets/model/scene_limits.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace relume {
@@ -173,6 +175,11 @@ void Session::save(const std::string& path) {
     if (loading && loader_.path() != prepare_.path) {
         fail(fmt::format("{}: not saved while {} is opened: save it before, or wait", prepare_.path,
                          loader_.path()));
+        return;
+    }
+    std::error_code code;
+    if (!std::filesystem::exists(prepare_.path, code)) { // edits go into a copy of what it has
+        fail(prepare_.path + ": is gone, so that its edits cannot be saved: put it back and save again");
         return;
     }
     if (file_.saving() || loading) {

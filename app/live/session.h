@@ -22,6 +22,7 @@ namespace relume {
 /// Says which file could not be opened, and why.
 struct OpenFailure {
     std::string path, message; // message: one line, which begins with the path where the file is to blame
+    bool undrawn = false;      // it was read and is baked, but is not seen
 };
 
 /// The scene on screen, its document with undo and redo, and the bake that follows them. It knows neither a

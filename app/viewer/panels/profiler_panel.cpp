@@ -51,8 +51,9 @@ void drawBake(const BakeStatus& status) {
             fmt::format("{:.1f} MiB, {:.0f} % of a pass",
                         static_cast<double>(progress.cacheBytes) / ui::kMebi, 100.0 * progress.cachedShare));
     if (status.deviceBytes > 0)
-        ui::row("Device memory",
-                fmt::format("{:.1f} MiB", static_cast<double>(status.deviceBytes) / ui::kMebi));
+        ui::row("Device memory", fmt::format("{:.1f} MiB; all programs {:.0f} MiB",
+                                             static_cast<double>(status.bakeBytes) / ui::kMebi,
+                                             static_cast<double>(status.deviceBytes) / ui::kMebi));
     if (status.hostBytes > 0)
         ui::row("Host memory for the device",
                 fmt::format("{:.1f} MiB", static_cast<double>(status.hostBytes) / ui::kMebi));

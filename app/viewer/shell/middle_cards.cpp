@@ -98,7 +98,7 @@ void drawOpening(const MiddleView& view, const PictureArea& area) {
 void drawFailure(const PanelContext& context, const MiddleView& view, const PictureArea& area) {
     const FailureText text = failureText(*view.failure);
     const Card card("failure", area, ImGuiWindowFlags_None);
-    drawTitle("This file cannot be opened", kBad);
+    drawTitle(text.title.c_str(), kBad);
     ImGui::TextWrapped("%s", text.name.c_str());
     drawPath(text.folder);
     ImGui::Spacing();

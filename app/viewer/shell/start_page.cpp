@@ -102,7 +102,7 @@ void StartPage::drawHow(const PanelContext& context, bool back) {
     ui::mark("Drop", false);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     drawDashes(low, high, ImGui::GetColorU32(ImGuiCol_TextDisabled));
-    drawCentred(low, high, "Drop a glTF file here", -0.6f, ImGuiCol_Text);
+    drawCentred(low, high, "Drop a scene here", -0.6f, ImGuiCol_Text);
     const std::string key = fmt::format("or click to choose one ({})", keyText(shortcutOf(Action::Open)));
     drawCentred(low, high, shortened(key, size.x).c_str(), 0.6f, ImGuiCol_TextDisabled);
     if (pressed) context.perform(Action::Open, 0);

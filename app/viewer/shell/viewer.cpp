@@ -196,8 +196,7 @@ void Viewer::takeScene() {
         picture_.camera().setHome(camera);
     }
     files_.sceneCame();
-    if (!undrawn.empty())
-        files_.opening().fail({scene.prepared.scene.path, undrawn}); // it is baked all the same
+    if (!undrawn.empty()) files_.opening().fail({scene.prepared.scene.path, undrawn, true});
     inspection_.sceneCame(session_.sceneWasKept());
     feedback_.tell("scene", scene.prepared.scene.path);
     for (const std::string& note : session_.takeReloadNotes())

@@ -6,8 +6,9 @@
 
 namespace relume {
 
-/// The parts of a message about a file that could not be opened.
+/// The parts of a message about a file that could not be opened, or not be drawn.
 struct FailureText {
+    std::string title;
     std::string name, folder; // of the file
     std::string thing;        // what is wrong
     std::string mend;         // what helps; never ""

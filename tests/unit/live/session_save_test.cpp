@@ -122,6 +122,25 @@ TEST_F(SessionSaveTest, PreviewLightIsInNoFileUntilItIsKept) {
     EXPECT_EQ(loadGltf(file()).lights.size(), 2u) << "each light has its node";
 }
 
+// Another program may have moved the file away, and brings it back.
+TEST_F(SessionSaveTest, AFileThatIsGoneIsNamedWithWhatHelps) {
+    open();
+    addLamp("A");
+    fs::rename(file(), folder_.path("away.glb"));
+    EXPECT_FALSE(save());
+    EXPECT_EQ(session_.lastError(),
+              file() + ": is gone, so that its edits cannot be saved: put it back and save again");
+    session_.clearError();
+    EXPECT_FALSE(save(folder_.path("other.glb"))) << "nor as another file";
+    EXPECT_FALSE(fs::exists(folder_.path("other.glb")));
+    EXPECT_TRUE(session_.dirty());
+    session_.clearError();
+    fs::rename(folder_.path("away.glb"), file());
+    EXPECT_TRUE(save());
+    EXPECT_FALSE(session_.dirty());
+    EXPECT_EQ(loadGltf(file()).lights.size(), 1u);
+}
+
 TEST_F(SessionSaveTest, ALampIsAddedToTheFileOnce) {
     open();
     addLamp("A");

@@ -45,6 +45,18 @@ TEST(Middle, ASceneThatIsReadAnewShowsNoCard) {
     EXPECT_EQ(opening.middle({.scene = true, .loading = true, .time = 100}), Middle{});
 }
 
+TEST(Middle, ASceneThatCannotBeDrawnIsToldWhereItWouldBeSeen) {
+    Opening opening;
+    const Facts facts{.scene = true, .time = 2};
+    opening.begin("/levels/big.glb", 0);
+    opening.sceneCame(); // it was read
+    opening.fail({"/levels/big.glb", "/levels/big.glb: cannot be drawn: no memory", true});
+    EXPECT_EQ(opening.middle(facts), (Middle{false, Card::Failure}));
+    EXPECT_EQ(middleName(opening.middle(facts)), "failure over scene");
+    EXPECT_TRUE(opening.putAway(facts));
+    EXPECT_EQ(opening.middle(facts), Middle{}) << "it is baked behind the card";
+}
+
 TEST(Middle, AFailureStandsOverTheSceneOrTheStartPageUntilItIsPutAway) {
     for (const bool scene : {false, true}) {
         Opening opening;

@@ -35,6 +35,16 @@ TEST(FailureText, TheMendIsTheLastPart) {
     EXPECT_EQ(text.mend, "export it again");
 }
 
+TEST(FailureText, ASceneThatCannotBeDrawnIsNoFileThatCannotBeOpened) {
+    const std::string message = "/levels/big.glb: cannot be drawn: texture 'wood' (9 x 9): no memory";
+    const FailureText text = failureText({"/levels/big.glb", message, true});
+    EXPECT_EQ(text.title, "This scene cannot be drawn");
+    EXPECT_EQ(text.name, "big.glb");
+    EXPECT_EQ(text.thing, "cannot be drawn: texture 'wood' (9 x 9): no memory") << "all that OpenGL says";
+    EXPECT_NE(text.mend.find("baked and exported all the same"), std::string::npos) << text.mend;
+    EXPECT_EQ(textOf("/levels/big.glb", message).title, "This file cannot be opened");
+}
+
 TEST(FailureText, WhatIsMissingIsFilledIn) {
     EXPECT_EQ(textOf("x.glb", "x.glb: does not fit in memory").thing, "does not fit in memory");
     EXPECT_EQ(textOf("x.glb", "x.glb: does not fit in memory").mend, "choose another file");
