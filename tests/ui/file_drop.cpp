@@ -91,4 +91,15 @@ bool dropFile(const std::string& display, unsigned long window, const std::strin
     return taken;
 }
 
+bool setDots(const std::string& name, int dots) {
+    Display* display = XOpenDisplay(name.c_str());
+    if (display == nullptr) return false;
+    const std::string resources = "Xft.dpi:\t" + std::to_string(dots) + "\n";
+    XChangeProperty(display, DefaultRootWindow(display), XA_RESOURCE_MANAGER, XA_STRING, 8, PropModeReplace,
+                    reinterpret_cast<const unsigned char*>(resources.data()),
+                    static_cast<int>(resources.size()));
+    XCloseDisplay(display);
+    return true;
+}
+
 } // namespace relume

@@ -64,8 +64,10 @@ void Inspection::askBesideMaps(const BakeStatus& status, double time) {
         askedVoxels_ = view.voxels;
         bake_.askVoxels(askedVoxels_);
     }
-    if (std::optional<std::vector<uint32_t>> tiles = picture_.pane().seenTiles())
+    if (std::optional<std::vector<uint32_t>> tiles = picture_.pane().seenTiles()) {
+        seen_ = tiles->size();
         bake_.setSeenTiles(std::move(*tiles));
+    }
     const bool moved = picture_.movedAt() > tilesAsked_;
     if (another || (moved && (picture_.rests(time) || time - tilesAsked_ > kTilesEvery))) {
         tilesAsked_ = time;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "app/live/live_bake.h"
 #include "app/viewer/picture/probe_balls.h"
@@ -27,6 +28,8 @@ public:
     /// Asks for what the view shows now, and takes what was answered. Returns whether the picture changed.
     bool follow(const BakeStatus& status, const LightList& lights, double time);
     ProbeBalls& balls() { return balls_; }
+    /// Returns how many tiles the camera sees, once for each time that the bake was told.
+    std::optional<size_t> takeSeen() { return std::exchange(seen_, std::nullopt); }
     /// Tells whether a map is the one that was asked for.
     bool asksFor(const PublishedMap& map) const;
 
@@ -41,6 +44,7 @@ private:
     uint64_t askedBake_ = 0; // the bake that was asked for voxels and tiles
     uint32_t askedVoxels_ = 0;
     double tilesAsked_ = -1e9; // [s]
+    std::optional<size_t> seen_;
 };
 
 } // namespace relume

@@ -225,6 +225,8 @@ void Viewer::followBake(double time) {
         feedback_.pacer().input();
     }
     if (inspection_.follow(baking_.status(), lights_.list(), time)) feedback_.sceneChanged();
+    if (const std::optional<size_t> seen = inspection_.takeSeen())
+        feedback_.tell("seen", fmt::format("{} tiles", *seen));
     if (const std::string told = inspection_.balls().takeTold(); !told.empty()) feedback_.tell("balls", told);
     if (const std::string why = inspection_.balls().takeRemark(); !why.empty()) feedback_.note(why, true);
     feedback_.followExposure(picture_.pane().adapting());
