@@ -14,11 +14,17 @@ namespace relume {
 
 namespace {
 
+// Counts the triangles that are to be baked: those of panes and of hidden objects are left out.
 uint32_t trianglesOf(const Scene& scene) {
+    const auto isPane = [&](const Primitive& primitive) {
+        return primitive.material >= 0 && scene.materials[static_cast<size_t>(primitive.material)].pane;
+    };
     size_t count = 0;
-    for (const Instance& instance : scene.instances)
+    for (const Instance& instance : scene.instances) {
+        if (instance.hidden) continue;
         for (const Primitive& primitive : scene.meshes[static_cast<size_t>(instance.mesh)].primitives)
-            count += primitive.indices.size() / 3;
+            if (!isPane(primitive)) count += primitive.indices.size() / 3;
+    }
     return static_cast<uint32_t>(count);
 }
 

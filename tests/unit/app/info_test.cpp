@@ -69,6 +69,23 @@ TEST(SceneInfo, CountsBoundsAndEmission) {
     EXPECT_FALSE(warns(info, "bakes to black"));
 }
 
+// What light passes and what is hidden is left out of the bake, too, though there is nothing wrong with it.
+TEST(SceneInfo, PanesAndHiddenObjectsAreNotCountedAsTrianglesWithoutArea) {
+    Primitive wall = test::square({0, 0}, {.5f, .5f}), glass = test::square({.5f, .5f}, {1, 1});
+    wall.material = 0;
+    glass.material = 1;
+    Scene scene = test::sceneOf(wall);
+    test::addInstance(scene, test::addMesh(scene, glass));
+    test::addInstance(scene, 0);
+    scene.instances.back().hidden = true;
+    scene.materials.resize(2);
+    scene.materials[1].pane = true;
+    const SceneInfo info = inspectScene(scene, 100);
+    EXPECT_EQ(info.triangles, 2u);
+    EXPECT_EQ(info.droppedTriangles, 0u);
+    EXPECT_FALSE(warns(info, "have no area"));
+}
+
 TEST(SceneInfo, SceneWithoutLightOrUvsIsDescribedAllTheSame) {
     Scene scene = test::sceneOf(test::cube());
     const SceneInfo info = inspectScene(scene, 64);
