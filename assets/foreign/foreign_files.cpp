@@ -52,6 +52,11 @@ const std::vector<std::string>& foreignEndings() {
     return endings;
 }
 
+std::string mendOf(const std::string& path) {
+    return lowerEnding(path) == ".blend" ? "install Blender, by which it is read then, or export it as glTF"
+                                         : "check the file, or export it as glTF";
+}
+
 bool isForeign(const std::string& path) {
     const std::string ending = lowerEnding(path);
     if (ending == ".glb" || ending == ".gltf") return false;

@@ -15,4 +15,7 @@ const std::vector<std::string>& foreignEndings();
 /// Returns a file's ending in lower case, ".obj", or "" where it has none.
 std::string lowerEnding(const std::string& path);
 
+/// Returns what helps where libassimp cannot read a file: Blender reads all .blend files.
+std::string mendOf(const std::string& path);
+
 } // namespace relume

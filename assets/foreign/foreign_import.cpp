@@ -216,9 +216,8 @@ void Converter::failAfterEnd() const {
     const std::string how =
         WIFSIGNALED(status_) ? fmt::format("signal {}, {}", WTERMSIG(status_), strsignal(WTERMSIG(status_)))
                              : fmt::format("exit status {}", WEXITSTATUS(status_));
-    throw Error(fmt::format("{}: libassimp failed while it read this {} file ({}): it may be damaged: export "
-                            "it again, or as glTF",
-                            desc_.path, lowerEnding(desc_.path), how));
+    throw Error(fmt::format("{}: libassimp failed while it read this {} file ({}): {}", desc_.path,
+                            lowerEnding(desc_.path), how, mendOf(desc_.path)));
 }
 
 std::vector<std::string> Converter::finish() {

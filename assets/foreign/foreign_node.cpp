@@ -179,6 +179,8 @@ void buildNodes(Build& build) {
     Placing placing{.scale = std::isfinite(scale) && scale > 0.0 ? scale : 1.0};
     if (std::isfinite(diagonal) && diagonal > 0.0) placing.reach = static_cast<float>(kReach * diagonal);
     const auto worldOf = [&](const aiString& name) {
+        // In .3ds files they have their places in the world, which libassimp tells again as those of nodes.
+        if (build.ending == ".3ds") return root;
         const auto found = named.find(std::string(name.data, name.length));
         return found == named.end() ? root : found->second;
     };

@@ -97,6 +97,8 @@ bool Pictures::read(const std::string& reference, const std::string& material, P
         return readEmbedded(*texture, picture) || refuse("has an embedded picture, " + inQuotes(reference) +
                                                          ", that cannot be decoded: its colour is used");
     }
+    if (build_.ending == ".blend" && reference.starts_with("Procedural,")) // as libassimp calls them
+        return refuse("has a texture that Blender computes: its colour is used");
     const std::string path = build_.near.find(reference);
     if (path.empty())
         return refuse("wants the picture " + inQuotes(reference) +

@@ -2,9 +2,12 @@
 
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
+#include "assets/foreign/foreign_files.h"
+#include "assets/foreign/smoothing_groups.h"
 
 #include <algorithm>
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <vector>
 
@@ -17,14 +20,22 @@
 namespace relume::foreign {
 namespace {
 
+// What no scene here has.
+constexpr int kRemoved =
+    aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS | aiComponent_TANGENTS_AND_BITANGENTS;
+
 /// Opens the file itself, and of all others those that NearFiles finds; for reading alone.
 class NearSystem final : public Assimp::DefaultIOSystem {
 public:
-    NearSystem(std::string model, NearFiles& near) : model_(std::move(model)), near_(near) {}
+    /// Appends the names of material libraries that are looked for and not found.
+    NearSystem(std::string model, NearFiles& near, std::vector<std::string>& missingLibraries)
+        : model_(std::move(model)), near_(near), missingLibraries_(missingLibraries) {}
 
     bool Exists(const char* file) const override { return !pathOf(file).empty(); }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
         const std::string path = pathOf(file);
+        if (path.empty() && lowerEnding(file) == ".mtl")
+            missingLibraries_.push_back(std::filesystem::path(file).filename().string());
         if (path.empty() || std::string(mode).find_first_of("wa+") != std::string::npos) return nullptr;
         return DefaultIOSystem::Open(path.c_str(), mode);
     }
@@ -34,6 +45,7 @@ private:
 
     std::string model_;
     NearFiles& near_;
+    std::vector<std::string>& missingLibraries_;
 };
 
 class Progress final : public Assimp::ProgressHandler {
@@ -91,8 +103,7 @@ Reader::Reader(NearFiles& near, const ForeignProgress& progress) : near_(near) {
 }
 
 void Reader::configure() {
-    importer_.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS |
-                                                             aiComponent_TANGENTS_AND_BITANGENTS);
+    importer_.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, kRemoved);
     // Files that hold but bones would get a mesh that shows them.
     importer_.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
 #ifdef AI_CONFIG_IMPORT_FBX_IGNORE_UP_AXIS_DIRECTION
@@ -111,17 +122,34 @@ void Reader::fail(const std::string& path) const {
         } catch (const std::exception&) { // its text is the one below
         }
     }
-    throw Error(fmt::format("{}: cannot be read ({}): check the file, or export it as glTF", path,
-                            inQuotes(oneLine(importer_.GetErrorString()))));
+    throw Error(fmt::format("{}: cannot be read ({}): {}", path,
+                            inQuotes(oneLine(importer_.GetErrorString())), mendOf(path)));
+}
+
+// libassimp looks for a library under the model's own name, too, where it does not find the one that is
+// named. The file wants for nothing where that is there, and names it itself where it looked for no other.
+void Reader::keepNamedLibraries(const std::string& path) {
+    std::vector<std::string>& names = missingLibraries_;
+    const std::string own = std::filesystem::path(path).filename().replace_extension("mtl").string();
+    if (std::find(names.begin(), names.end(), own) == names.end()) names.clear();
+    std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
+    if (names.size() > 1) names.erase(std::find(names.begin(), names.end(), own));
 }
 
 const aiScene& Reader::read(const std::string& path) {
-    importer_.SetIOHandler(new NearSystem(path, near_)); // which the importer deletes
+    if (!meansItsNormals(path))
+        importer_.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS, kRemoved | aiComponent_NORMALS);
+    importer_.SetIOHandler(new NearSystem(path, near_, missingLibraries_)); // which the importer deletes
     const aiScene* scene = importer_.ReadFile(path, 0);
     if (!scene) fail(path);
+    keepNamedLibraries(path);
     if (const std::string damage = damageOf(*scene); !damage.empty())
         throw Error(fmt::format("{}: is damaged ({}): export it again", path, damage));
     skippedPoints_ = hasPoints(*scene);
+    animated_ = scene->mNumAnimations > 0;
+    skinned_ = std::any_of(scene->mMeshes, scene->mMeshes + scene->mNumMeshes,
+                           [](const aiMesh* mesh) { return mesh->mNumBones > 0; });
     // No normals are made here: libassimp smooths over points that are merely close to each other.
     scene = importer_.ApplyPostProcessing(aiProcess_RemoveComponent | aiProcess_Triangulate |
                                           aiProcess_GenUVCoords | aiProcess_TransformUVCoords);

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
@@ -22,14 +23,21 @@ public:
     const aiScene& read(const std::string& path);
     /// Tells whether the file has points or lines, which are left out.
     bool skippedPoints() const { return skippedPoints_; }
+    /// Tells whether it has animations, and whether it has skins, both of which are left out.
+    bool animated() const { return animated_; }
+    bool skinned() const { return skinned_; }
+    /// Returns the material libraries (.mtl) that the file names and that are not near it.
+    const std::vector<std::string>& missingLibraries() const { return missingLibraries_; }
 
 private:
     [[noreturn]] void fail(const std::string& path) const;
     void configure();
+    void keepNamedLibraries(const std::string& path);
 
     NearFiles& near_;
     Assimp::Importer importer_;
-    bool skippedPoints_ = false;
+    bool skippedPoints_ = false, animated_ = false, skinned_ = false;
+    std::vector<std::string> missingLibraries_;
 };
 
 } // namespace relume::foreign

@@ -65,14 +65,14 @@ bool isInWatts(const Build& build) {
     return versionIn(std::string(generator.data, generator.length)) >= kFirstInWatts;
 }
 
-void warnUnsupported(Build& build) {
-    if (build.source->mNumAnimations > 0)
-        build.warnings.add("animations", "are not supported, the scene stands as stored");
-    for (unsigned i = 0; i < build.source->mNumMeshes; ++i)
-        if (build.source->mMeshes[i]->mNumBones > 0) {
-            build.warnings.add("skins", "are not supported, the meshes stand as stored");
-            break;
-        }
+void warnUnsupported(Build& build, const Reader& reader) {
+    if (reader.animated()) build.warnings.add("animations", "are not supported, the scene stands as stored");
+    if (reader.skinned()) build.warnings.add("skins", "are not supported, the meshes stand as stored");
+    if (reader.skippedPoints()) build.warnings.add("points and lines", "have no area, left out");
+    for (const std::string& library : reader.missingLibraries())
+        build.warnings.add(
+            "the material library " + inQuotes(library),
+            "is not in the folder of the file or near it, its materials are grey: put it there");
 }
 
 } // namespace
@@ -105,8 +105,7 @@ ForeignScene convertForeign(const std::string& path, const ForeignChoice& choice
     build.source = &reader.read(path);
     build.inWatts = foreign::isInWatts(build);
     build.made.scene.path = path;
-    foreign::warnUnsupported(build);
-    if (reader.skippedPoints()) build.warnings.add("points and lines", "have no area, left out");
+    foreign::warnUnsupported(build, reader);
     foreign::buildMaterials(build);
     foreign::buildNodes(build);
     if (build.made.scene.instances.empty())

@@ -153,8 +153,8 @@ std::optional<int> runImportChild(int count, const char* const* arguments) {
     } catch (const std::length_error&) { // a size that no memory has
         teller.tellMemory();
     } catch (const std::exception& error) {
-        teller.tell(ImportWord::Error, task.path + ": cannot be read (" + error.what() +
-                                           "): check the file, or export it as glTF");
+        teller.tell(ImportWord::Error,
+                    task.path + ": cannot be read (" + error.what() + "): " + mendOf(task.path));
     }
     return 1;
 }

@@ -60,6 +60,21 @@ Reference parse(std::string text) {
     return reference;
 }
 
+// Returns a name without the blanks around it and without quotation marks, as exporters write both.
+std::string bareName(std::string text) {
+    const auto trim = [&] {
+        const size_t first = text.find_first_not_of(" \t\r");
+        text =
+            first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") + 1 - first);
+    };
+    trim();
+    if (text.size() > 1 && text.front() == text.back() && (text.front() == '"' || text.front() == '\'')) {
+        text = text.substr(1, text.size() - 2);
+        trim();
+    }
+    return text;
+}
+
 } // namespace
 
 NearFiles::NearFiles(const std::string& model)
@@ -73,7 +88,7 @@ NearFiles::NearFiles(const std::string& model)
 }
 
 std::string NearFiles::find(const std::string& reference) {
-    for (const std::string& text : {reference, decodedUri(reference)}) {
+    for (const std::string& text : {reference, bareName(reference), decodedUri(reference)}) {
         if (text.find('\0') != std::string::npos) continue;
         const Reference name = parse(text);
         if (name.parts.empty() || name.parts.size() > kMostParts) continue;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <fstream>
+#include <initializer_list>
 #include <random>
 #include <string>
 #include <utility>
@@ -151,27 +153,42 @@ Connections:  {
 }
 )";
 
+/// A chunk of a .3ds file.
+inline std::string chunk3ds(uint16_t id, const std::string& content) {
+    const auto length = static_cast<uint32_t>(6 + content.size());
+    std::string head(6, '\0');
+    std::memcpy(head.data(), &id, sizeof(id));
+    std::memcpy(head.data() + 2, &length, sizeof(length));
+    return head + content;
+}
+
+template<typename T>
+std::string bytesOf(std::initializer_list<T> values) {
+    return {reinterpret_cast<const char*>(values.begin()), values.size() * sizeof(T)};
+}
+
+/// A mesh of a .3ds file: two triangles that meet at a right angle; the chunk of their smoothing groups.
+inline std::string wedge3ds(const std::string& groups) {
+    const std::string vertices =
+        bytesOf<uint16_t>({4}) + bytesOf<float>({0, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0, 1});
+    const std::string faces = bytesOf<uint16_t>({2, 0, 1, 2, 0, 0, 2, 3, 0}) + groups;
+    return chunk3ds(0x4100, chunk3ds(0x4110, vertices) + chunk3ds(0x4120, faces));
+}
+
+/// A .3ds file of objects, each a name and a chunk, and what is behind them.
+inline std::string file3ds(const std::vector<std::pair<std::string, std::string>>& objects,
+                           const std::string& behind = "") {
+    std::string all;
+    for (const auto& [name, content] : objects)
+        all += chunk3ds(0x4000, name + '\0' + content);
+    return chunk3ds(0x4d4d, chunk3ds(0x3d3d, all) + behind);
+}
+
 /// A .3ds file of one triangle.
 inline std::string triangle3ds() {
-    std::string faces, vertices;
-    const auto put = [](std::string& to, auto value) {
-        to.append(reinterpret_cast<const char*>(&value), sizeof(value));
-    };
-    const auto chunk = [&](uint16_t id, const std::string& content) {
-        std::string all;
-        put(all, id);
-        put(all, static_cast<uint32_t>(6 + content.size()));
-        return all + content;
-    };
-    put(vertices, uint16_t{3});
-    for (const float value : {0.f, 0.f, 0.f, 2.f, 0.f, 0.f, 0.f, 3.f, 0.f})
-        put(vertices, value);
-    put(faces, uint16_t{1});
-    for (const uint16_t value : {0, 1, 2, 0})
-        put(faces, value);
-    const std::string mesh = chunk(0x4100, chunk(0x4110, vertices) + chunk(0x4120, faces));
-    const std::string object = chunk(0x4000, std::string("Wedge") + '\0' + mesh);
-    return chunk(0x4d4d, chunk(0x3d3d, object));
+    const std::string vertices = bytesOf<uint16_t>({3}) + bytesOf<float>({0, 0, 0, 2, 0, 0, 0, 3, 0});
+    const std::string faces = bytesOf<uint16_t>({1, 0, 1, 2, 0});
+    return file3ds({{"Wedge", chunk3ds(0x4100, chunk3ds(0x4110, vertices) + chunk3ds(0x4120, faces))}});
 }
 
 /// Good files, each with its ending, to be mutated.
