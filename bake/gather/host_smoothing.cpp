@@ -140,35 +140,46 @@ inline void LineSmoother::load(uint32_t firstLine, uint32_t at, Place& place) co
     }
 }
 
-// The weights of the taps are those of a local straight-line fit, as in lib/smoothing.glsl.
+// Makes w how much a tap counts for a place, if it is of this chart.
+[[gnu::always_inline]] inline void weigh(const Place& c, const Place& tap, const Floats& falloff,
+                                         const Ints& chart, Floats& w) {
+    const Floats dx = tap.px - c.px, dy = tap.py - c.py, dz = tap.pz - c.pz;
+    const Floats height = dx * c.gx + dy * c.gy + dz * c.gz;
+    const Floats distance2 = dx * dx + dy * dy + dz * dz + kOffPlane * height * height;
+    Floats facing = c.sx * tap.sx + c.sy * tap.sy + c.sz * tap.sz;
+    facing = facing > 0.0f ? facing : Floats{};
+    facing *= facing;
+    facing *= facing;
+    facing *= facing;
+    w = falloff * distance2;
+    exponential(w);
+    w *= facing;
+    w = tap.tapChart == chart ? w : Floats{};
+}
+
+// The weights of the taps are those of a local straight-line fit, and end at what stands between, as in
+// lib/smoothing.glsl.
 inline void LineSmoother::smooth(const std::array<Place, kRing>& ring, uint32_t at) const {
     const Place& c = ring[at & mask_];
     if (std::all_of(c.patch.begin(), c.patch.end(), [](uint32_t patch) { return patch == kNoPatch; })) return;
     const auto reach = static_cast<int32_t>(work_.reach);
     std::array<Floats, 2 * kMaxReach + 1> weights;
-    Floats s0{}, s1{}, s2{};
-    for (int32_t t = -reach; t <= reach; ++t) {
-        const Place& tap = ring[(at + static_cast<uint32_t>(t)) & mask_];
-        Floats w = 1.0f + Floats{};
-        if (t != 0) {
-            const Floats dx = tap.px - c.px, dy = tap.py - c.py, dz = tap.pz - c.pz;
-            const Floats height = dx * c.gx + dy * c.gy + dz * c.gz;
-            const Floats distance2 = dx * dx + dy * dy + dz * dz + kOffPlane * height * height;
-            Floats facing = c.sx * tap.sx + c.sy * tap.sy + c.sz * tap.sz;
-            facing = facing > 0.0f ? facing : Floats{};
-            facing *= facing;
-            facing *= facing;
-            facing *= facing;
-            w = c.falloff * distance2;
-            exponential(w);
-            w *= facing;
-            w = tap.tapChart == c.chart ? w : Floats{};
+    weights[work_.reach] = 1.0f + Floats{};
+    Floats s0 = weights[work_.reach], s1{}, s2{};
+    for (const int32_t way : {-1, 1}) {
+        Floats falloff = c.falloff;
+        Ints chart = c.chart; // kNotSmoothed behind a gap
+        for (int32_t t = way; t * way <= reach; t += way) {
+            const Place& tap = ring[(at + static_cast<uint32_t>(t)) & mask_];
+            chart = tap.tapChart == chart ? chart : kNotSmoothed + Ints{};
+            falloff = tap.falloff < falloff ? tap.falloff : falloff;
+            Floats& w = weights[static_cast<uint32_t>(t + reach)];
+            weigh(c, tap, falloff, chart, w);
+            const auto steps = static_cast<float>(t);
+            s0 += w;
+            s1 += w * steps;
+            s2 += w * (steps * steps);
         }
-        const auto way = static_cast<float>(t);
-        weights[static_cast<uint32_t>(t + reach)] = w;
-        s0 += w;
-        s1 += w * way;
-        s2 += w * (way * way);
     }
     const Floats det = s0 * s2 - s1 * s1;
     const Ints line = det > 1e-3f * s0 * s0;

@@ -1,8 +1,9 @@
-// Light beside an edge of a room is smoothed along the edge, and not across it.
+// Light beside an edge of a room is smoothed along the edge, and not across it, nor through walls.
 #include "tests/gpu/bake_scene.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -10,6 +11,8 @@ namespace relume {
 namespace {
 
 constexpr uint32_t kCornerMapSize = 96, kWallTexels = 24;
+constexpr uint32_t kShedMapSize = 112, kShedFloorTexels = 36;
+constexpr float kShedLow = 1.02f, kShedSize = 1.0f; // within its walls [m]
 
 struct ClosedRoom {
     Scene scene;
@@ -56,7 +59,50 @@ EdgeOff edgeOff(const FloatImage& map, const FloatImage& truth, const ClosedRoom
     return {std::sqrt(squares / count), sum / count};
 }
 
+// A dark shed without a floor of its own stands on the floor of that room. Its walls go through the floor.
+ClosedRoom roomWithShed(float thickness) {
+    SceneMaker maker(kShedMapSize);
+    const int grey = maker.material(0.6f), lamp = maker.material(0.0f, 40.0f);
+    const std::array<TexelRect, 6> walls =
+        maker.box({0, 0, 0}, {3.0f * kX, 3.0f * kY, 3.0f * kZ}, grey, kShedFloorTexels);
+    maker.quad({1, 2, 2.9f}, 1.0f * kY, 1.0f * kX, lamp, {2, 2});
+    const glm::vec3 low = glm::vec3(kShedLow, kShedLow, -0.1f), size(kShedSize, kShedSize, 1.3f);
+    const auto shell = [&](glm::vec3 corner, glm::vec3 edges, bool inside) {
+        const auto side = [&](glm::vec3 from, glm::vec3 u, glm::vec3 v) {
+            maker.quad(from, inside ? v : u, inside ? u : v, grey, {4, 4});
+        };
+        const glm::vec3 x = edges.x * kX, y = edges.y * kY, z = edges.z * kZ;
+        side(corner, z, y);
+        side(corner + x, y, z);
+        side(corner, x, z);
+        side(corner + y, z, x);
+        side(corner + z, x, y);
+    };
+    shell(low, size, true);
+    shell(low - glm::vec3(thickness, thickness, 0), size + glm::vec3(2, 2, 1) * thickness, false);
+    return {maker.scene(), walls};
+}
+
 } // namespace
+
+// No light comes into the shed, so whatever is told of its floor has leaked. Its walls are thicker than a
+// texel. Texels that they stand in and the next ones are left out: a part of the former lies outside.
+TEST(CornerSmoothing, StopsAtAWallThatStandsOnTheSameFloor) {
+    const ClosedRoom closed = roomWithShed(0.1f);
+    const Baked baked = bakeScene(
+        closed.scene,
+        {.size = kShedMapSize, .passes = 0, .method = Method::Hybrid, .samples = 16, .smooth = true});
+    const double outside = texel(baked.lighting, closed.walls[2], 4, kShedFloorTexels / 2);
+    EXPECT_GT(outside, 0.5);
+    const double texelSize = 3.0 / kShedFloorTexels;
+    const auto first = static_cast<uint32_t>(std::ceil(kShedLow / texelSize)) + 1;
+    const auto end = static_cast<uint32_t>((kShedLow + kShedSize) / texelSize) - 1;
+    double most = 0;
+    for (uint32_t row = first; row < end; ++row)
+        for (uint32_t column = first; column < end; ++column)
+            most = std::max(most, texel(baked.lighting, closed.walls[2], column, row));
+    EXPECT_LT(most, 0.02 * outside) << outside;
+}
 
 TEST(CornerSmoothing, GoesAlongEdgesAndNotAcross) {
     const ClosedRoom closed = closedRoom();

@@ -16,9 +16,18 @@ Scene ball() {
     return maker.scene();
 }
 
-void expectAlike(BakeDesc desc) {
+// A room with a board that stands on its floor, which parts the light on both of its sides.
+Scene partedRoom() {
+    SceneMaker maker(64);
+    maker.box({0, 0, 0}, {2.0f * kX, 2.0f * kY, 2.0f * kZ}, maker.material(0.5f, 1.0f), 16);
+    const int dark = maker.material(0.1f);
+    maker.quad({0.9f, 0.3f, -0.1f}, 1.2f * kZ, 1.4f * kY, dark, {8, 8});
+    maker.quad({1.0f, 0.3f, -0.1f}, 1.4f * kY, 1.2f * kZ, dark, {8, 8});
+    return maker.scene();
+}
+
+void expectAlike(BakeDesc desc, const Scene& scene = ball()) {
     if (!testDevice().info().software()) GTEST_SKIP() << "the device makes results anyway";
-    const Scene scene = ball();
     const Baked host = bakeScene(scene, desc);
     desc.deviceGather = true;
     const Baked device = bakeScene(scene, desc);
@@ -36,6 +45,10 @@ TEST(HostResolve, MakesWhatTheDeviceDoes) {
 TEST(HostResolve, MakesWhatTheDeviceDoesWhereChunksHaveSamplesOfTheirOwn) {
     expectAlike(
         {.passes = 0, .localError = 0.03, .perChunk = true, .method = Method::Hybrid, .smooth = true});
+}
+
+TEST(HostResolve, MakesWhatTheDeviceDoesWhereAWallPartsAFloor) {
+    expectAlike({.passes = 0, .method = Method::Hybrid, .samples = 16, .smooth = true}, partedRoom());
 }
 
 TEST(HostResolve, MakesWhatTheDeviceDoesOfLayers) {
