@@ -19,7 +19,8 @@ uint tapAt(uint chart, ivec2 texel) {
 // Returns by how much the square of a distance counts: over twice the variance of the weights [1/m^2].
 float tapFalloff(uint index, ivec2 axis) {
     float area = max(loadPatch(push.patches, index).area, 1e-30);
-    float sigma = min(push.sigma, kDistanceShare * FLOAT_AT(push.distances, 2u * index + uint(axis.y)) / sqrt(area));
+    float distance = FLOAT_AT(push.distances, 2u * index + uint(axis.y));
+    float sigma = min(push.sigma, kDistanceShare * distance / sqrt(area));
     return 0.5 / max(sigma * sigma * area, 1e-38);
 }
 
@@ -59,8 +60,9 @@ Taps smoothingTaps(uint own, ivec2 axis) {
         taps.index[t + reach] = own;
         taps.weight[t + reach] = t == 0 ? 1.0 : 0.0;
     }
-    // What stands between two patches parts their light, be it a wall upon a floor that is one chart. It hides
-    // texels, or the patches at its foot have it near: nothing counts beyond them, nor more than they allow.
+    // What stands between two patches parts their light, as a wall upon a floor that is one chart does. It
+    // hides texels, or the patches at its foot have it near: nothing counts beyond them, nor more than they
+    // allow.
     float s0 = 1.0, s1 = 0.0, s2 = 0.0;
     for (int way = placed ? -1 : 3; way <= 1; way += 2) {
         float narrowest = falloff;
