@@ -118,7 +118,7 @@ double writeMaps(const BakeOptions& o, const BakeRequest& request, const Prepare
     } else {
         writeLightmap(o.files.output, image, type, compression);
     }
-    if (!o.files.picture.empty()) writeLightmap(o.files.picture, image);
+    if (!o.files.picture.empty()) writeLightmapPicture(o.files.picture, image);
     if (!o.files.errorMap.empty())
         writeLightmap(o.files.errorMap, baker.errorMap(), ExrType::Float, compression);
     return made;

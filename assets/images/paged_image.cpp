@@ -188,6 +188,20 @@ std::vector<decltype(std::declval<Read>()(std::string()))> readPages(const std::
     return all;
 }
 
+void writePages(const std::string& path, const FloatImage& image, ExrType type, ExrCompression compression) {
+    const LightmapPages pages = lightmapPagesOf(image);
+    if (pages.count == 1) return writeImage(path, image, type, compression);
+    const std::string whole = wholeOf(hashOf(image, 0));
+    AtomicFiles files;
+    for (uint32_t page = 0; page < pages.count; ++page) {
+        FloatImage own = cutOut(image, pages, page);
+        notePage(own, page, whole);
+        const std::string name = pagePath(path, page);
+        files.add(name, encodeImage(name, own, type, compression));
+    }
+    files.commit();
+}
+
 } // namespace
 
 void noteLightmapPages(FloatImage& image, const LightmapPages& pages) {
@@ -264,17 +278,11 @@ std::string lostInPng(const std::string& path, const FloatImage& image) {
 void writeLightmap(const std::string& path, const FloatImage& image, ExrType type,
                    ExrCompression compression) {
     if (const std::string lost = lostInPng(path, image); !lost.empty()) spdlog::warn("{}", lost);
-    const LightmapPages pages = lightmapPagesOf(image);
-    if (pages.count == 1) return writeImage(path, image, type, compression);
-    const std::string whole = wholeOf(hashOf(image, 0));
-    AtomicFiles files;
-    for (uint32_t page = 0; page < pages.count; ++page) {
-        FloatImage own = cutOut(image, pages, page);
-        notePage(own, page, whole);
-        const std::string name = pagePath(path, page);
-        files.add(name, encodeImage(name, own, type, compression));
-    }
-    files.commit();
+    writePages(path, image, type, compression);
+}
+
+void writeLightmapPicture(const std::string& path, const FloatImage& image) {
+    writePages(path, image, ExrType::Float, kExrCompression);
 }
 
 void writeLayeredLightmap(const std::string& path, const LayeredImage& image, ExrType type,

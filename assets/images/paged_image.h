@@ -32,7 +32,9 @@ std::string lostInPng(const std::string& path, const FloatImage& image);
 /// own; no page takes its name before all are whole.
 void writeLightmap(const std::string& path, const FloatImage& image, ExrType type = ExrType::Float,
                    ExrCompression compression = kExrCompression);
-/// Does the same with layers, as writeLayeredExr does.
+/// Does the same for a .png beside a file that holds all light, so that nothing is lost and told.
+void writeLightmapPicture(const std::string& path, const FloatImage& image);
+/// Does what writeLightmap does with layers, as writeLayeredExr does.
 void writeLayeredLightmap(const std::string& path, const LayeredImage& image, ExrType type = ExrType::Float,
                           ExrCompression compression = kExrCompression);
 

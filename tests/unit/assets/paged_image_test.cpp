@@ -98,6 +98,9 @@ TEST_F(PagedImage, WhatAPngCutsOffIsTold) {
     const LogCapture log;
     writeLightmap(path("a.png"), image);
     EXPECT_NE(log.text().find("a.png: 25 % of its texels"), std::string::npos) << log.text();
+    writeLightmapPicture(path("b.png"), image);
+    EXPECT_TRUE(fs::exists(path("b.png")));
+    EXPECT_EQ(log.text().find("b.png"), std::string::npos) << "nothing is lost beside an .exr";
 }
 
 TEST_F(PagedImage, PagesAreReadAsTheyWereWritten) {
