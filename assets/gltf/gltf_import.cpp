@@ -317,6 +317,7 @@ Scene loadGltf(const std::string& path, const GltfChoice& choice) {
     if (build.scene.instances.empty())
         throw Error(fmt::format("{}: all its triangles reach beyond {:g} m: make it smaller or move it", path,
                                 kFarthest));
+    if (const std::string far = coarsePlaces(build.scene); !far.empty()) build.warnings.add("the scene", far);
     build.scene.warnings = build.warnings.lines(path);
     return std::move(build.scene);
 }

@@ -24,15 +24,35 @@ MeshBox boxOf(const Mesh& mesh) {
     return box;
 }
 
+glm::dvec3 cornerOf(const MeshBox& box, int corner) {
+    return {(corner & 1) != 0 ? box.high.x : box.low.x, (corner & 2) != 0 ? box.high.y : box.low.y,
+            (corner & 4) != 0 ? box.high.z : box.low.z};
+}
+
 bool isWithin(const MeshBox& box, const glm::mat4& transform) {
     if (box.low.x > box.high.x) return true;
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1) != 0 ? box.high.x : box.low.x,
-                           (corner & 2) != 0 ? box.high.y : box.low.y,
-                           (corner & 4) != 0 ? box.high.z : box.low.z);
-        if (!isWithinReach(glm::vec3(glm::dmat4(transform) * glm::dvec4(p, 1.0)))) return false;
-    }
+    for (int corner = 0; corner < 8; ++corner)
+        if (!isWithinReach(glm::vec3(glm::dmat4(transform) * glm::dvec4(cornerOf(box, corner), 1.0))))
+            return false;
     return true;
+}
+
+// Returns the box of all that stands in a scene.
+MeshBox boxOf(const Scene& scene) {
+    std::vector<MeshBox> boxes(scene.meshes.size());
+    for (size_t m = 0; m < boxes.size(); ++m)
+        boxes[m] = boxOf(scene.meshes[m]);
+    MeshBox all;
+    for (const Instance& instance : scene.instances) {
+        const MeshBox& box = boxes[static_cast<size_t>(instance.mesh)];
+        if (box.low.x > box.high.x) continue;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 at = glm::dmat4(instance.transform) * glm::dvec4(cornerOf(box, corner), 1.0);
+            all.low = glm::min(all.low, at);
+            all.high = glm::max(all.high, at);
+        }
+    }
+    return all;
 }
 
 bool isFar(const glm::mat4& transform, const glm::vec3& position) {
@@ -146,6 +166,21 @@ void dropFarTriangles(Scene& scene, Warnings& warnings) {
     std::erase_if(scene.instances, [&](const Instance& instance) {
         return scene.meshes[static_cast<size_t>(instance.mesh)].primitives.empty();
     });
+}
+
+std::string coarsePlaces(const Scene& scene) {
+    constexpr double kMostShare = 5e-5; // of the scene's diagonal: 7 mm of 140 m show as rings at contacts
+    const MeshBox box = boxOf(scene);
+    if (box.low.x > box.high.x) return "";
+    const glm::dvec3 reach = glm::max(glm::abs(box.low), glm::abs(box.high));
+    const double farthest = std::max({reach.x, reach.y, reach.z});
+    const double step = std::ldexp(1.0, std::ilogb(static_cast<float>(std::max(farthest, 1e-30))) -
+                                            (std::numeric_limits<float>::digits - 1));
+    if (step <= kMostShare * glm::length(box.high - box.low)) return "";
+    return fmt::format(
+        "lies up to {:.3g} m from the origin, where places are rounded to {:.2g} m, which shows "
+        "where things touch: move all of it nearer",
+        farthest, step);
 }
 
 std::vector<std::string> limitLight(Light& light) {

@@ -37,6 +37,10 @@ void dropFarTriangles(Scene& scene, Warnings& warnings);
 /// Returns what such a warning says of `count` triangles.
 std::string farTriangles(size_t count);
 
+/// Says, of a scene that lies so far from the origin that floats round its places to more than a few parts in
+/// 100,000 of its size, what is wrong with it, as a sentence without its subject; "" of any other.
+std::string coarsePlaces(const Scene& scene);
+
 /// Brings a light, a material or the sky within the bounds. Returns what was wrong with it: for each thing
 /// that was corrected, a sentence without its subject. A light may stand too far away for that: see
 /// isWithinReach.

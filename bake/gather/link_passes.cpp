@@ -111,10 +111,10 @@ SpilledBytes LinkBuffers::bytes(const SolverExtent& extent, const Desc& desc, ui
 
 uint32_t smoothingReach(float sigma) {
     constexpr float kReachInSigmas = 2.0f;
-    constexpr uint32_t kMaxReach = 8;   // lib/smoothing.glsl
-    constexpr float kLeastSigma = 0.3f; // [texels]: a neighbour then counts for less than half a percent
-    if (sigma < kLeastSigma) return 0;
-    return std::min(kMaxReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * sigma)));
+    constexpr uint32_t kMostReach = 8; // kMaxReach of lib/smoothing.glsl
+    constexpr float kNoneBelow = 0.3f; // [texels]: a neighbour then counts for less than half a percent
+    if (sigma < kNoneBelow) return 0;
+    return std::min(kMostReach, static_cast<uint32_t>(std::ceil(kReachInSigmas * sigma)));
 }
 
 float carriedShare(uint32_t samplePasses) {

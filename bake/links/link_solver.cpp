@@ -82,7 +82,6 @@ uint32_t directionsOf(const SolverSettings& settings, const LinkSchedule& schedu
 }
 
 vk::Buffer makeDisc(const vk::Device& device, uint32_t count) {
-    if (count == 0) return {};
     std::vector<glm::vec2> points;
     points.reserve(count);
     for (const glm::dvec2 p : evenRings(largestEmptyCircleDisc(count)))
@@ -123,8 +122,8 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
                       .chunks = kit_.rankChunks.linked(),
                       .oneSamplePass = true}),
       errors_(kit_), senders_(input.device.workers(), receiversOf(input, coarse_)),
-      schedule_(rules()), disc_{directionsOf(kit_.settings, schedule_, kit_.linksOfSamplePass),
-                                makeDisc(input.device, disc_.count)},
+      schedule_(rules()), disc_{.count = directionsOf(kit_.settings, schedule_, kit_.linksOfSamplePass),
+                                .points = {}},
       radiancePass_(input.device),
       sendsOnHost_(kit_.gatherPass.onCpu() && kit_.settings.transport.reflectedOnly &&
                    kit_.rankChunks.alone() && coarse_.count == 0 && !settings.links.footprint),
@@ -132,6 +131,7 @@ LinkSolver::LinkSolver(const SolverInput& input, const SolverSettings& settings)
       directPlan_(input.device.workers(), kit_.chunkCount()), directPortions_(kit_) {
     ASSERT(input.ranks.alone() || (!settings.live && coarse_.count == 0));
     batchMs_ = settings.batchMs;
+    if (disc_.count > 0) disc_.points = makeDisc(input.device, disc_.count);
     const PatchSet& patches = input.patches;
     LinkBuffers& buffers = kit_.buffers;
     if (settings.links.footprint) footprints_.emplace(input.device, patches);

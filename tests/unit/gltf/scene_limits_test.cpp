@@ -97,6 +97,27 @@ TEST(SceneLimits, AnInstanceThatIsTooLargeLeavesOthersOfItsMeshWhole) {
     EXPECT_EQ(warnings.lines("").size(), 1u);
 }
 
+TEST(SceneLimits, ALevelFarFromTheOriginIsTold) {
+    Scene scene = test::sceneOf(test::square());
+    const auto moved = [&](double metres, double scale) {
+        scene.instances[0].transform =
+            glm::scale(glm::translate(glm::mat4(1), glm::vec3(metres, 0, 0)), glm::vec3(scale));
+        return coarsePlaces(scene);
+    };
+    EXPECT_EQ(moved(0, 100), "");
+    EXPECT_EQ(moved(20e3, 100), "");
+    EXPECT_NE(moved(200e3, 100).find("from the origin, where places are rounded to 0.016 m"),
+              std::string::npos)
+        << moved(200e3, 100);
+    EXPECT_EQ(moved(200e3, 10e3), "") << "for its size it is near";
+    EXPECT_NE(moved(20, 1e-3), "") << "a model of a millimetre, 20 m away";
+    test::GlbBuilder builder;
+    builder.node({{"mesh", builder.mesh(builder.square())}, {"translation", {200e3, 0, 0}}});
+    const Scene read = loadGltf(builder.write("far.glb"));
+    ASSERT_EQ(read.warnings.size(), 1u);
+    EXPECT_NE(read.warnings[0].find("the scene: lies up to 2e+05 m"), std::string::npos) << read.warnings[0];
+}
+
 TEST(SceneLimits, ASceneOfWhichNothingIsLeftIsAnError) {
     Scene scene = test::sceneOf(test::square());
     scene.instances[0].transform = glm::scale(glm::mat4(1), glm::vec3(1e20f));
