@@ -86,8 +86,8 @@ bool readsThirdSet(Engine engine) {
     return engine == Engine::Three || engine == Engine::Babylon || engine == Engine::Blender;
 }
 
-// Godot passes over KHR_materials_transmission, and PlayCanvas shows glass as black where no camera keeps
-// what is behind it.
+// Godot is taken to pass over KHR_materials_transmission, which was not tried in it, and PlayCanvas shows
+// glass as black where no camera keeps what is behind it.
 bool showsTransmission(Engine engine) {
     return engine != Engine::Godot && engine != Engine::PlayCanvas;
 }
