@@ -6,12 +6,15 @@
 #include "assets/foreign/smoothing_groups.h"
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <filesystem>
+#include <memory>
 #include <new>
 #include <vector>
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -23,6 +26,22 @@ namespace {
 // What no scene here has.
 constexpr int kRemoved =
     aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS | aiComponent_TANGENTS_AND_BITANGENTS;
+
+// Returns a stream without the mark that some editors put before UTF-8 (EF BB BF): libassimp takes it for the
+// beginning of an .obj file's first word. `stream` is at its beginning.
+std::unique_ptr<Assimp::IOStream> withoutMark(std::unique_ptr<Assimp::IOStream> stream) {
+    constexpr std::array<uint8_t, 3> kMark = {0xEF, 0xBB, 0xBF};
+    std::array<uint8_t, 3> begin{};
+    const size_t size = stream->FileSize();
+    if (size >= kMark.size() && stream->Read(begin.data(), 1, begin.size()) == begin.size() &&
+        begin == kMark) {
+        auto rest = std::make_unique<uint8_t[]>(size - kMark.size());
+        const size_t count = stream->Read(rest.get(), 1, size - kMark.size());
+        return std::make_unique<Assimp::MemoryIOStream>(rest.release(), count, true);
+    }
+    stream->Seek(0, aiOrigin_SET);
+    return stream;
+}
 
 /// Opens the file itself, and of all others those that NearFiles finds; for reading alone.
 class NearSystem final : public Assimp::DefaultIOSystem {
@@ -37,7 +56,10 @@ public:
         if (path.empty() && lowerEnding(file) == ".mtl")
             missingLibraries_.push_back(std::filesystem::path(file).filename().string());
         if (path.empty() || std::string(mode).find_first_of("wa+") != std::string::npos) return nullptr;
-        return DefaultIOSystem::Open(path.c_str(), mode);
+        std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(path.c_str(), mode));
+        const std::string ending = lowerEnding(file);
+        if (stream && (ending == ".obj" || ending == ".mtl")) stream = withoutMark(std::move(stream));
+        return stream.release();
     }
 
 private:

@@ -1,6 +1,7 @@
 // What exporters leave out of files, or write beside it, is no reason to lose anything of a scene.
 #include "assets/foreign/foreign_scene.h"
 
+#include "assets/base/error.h"
 #include "assets/foreign/foreign_files.h"
 #include "assets/foreign/smoothing_groups.h"
 #include "tests/unit/foreign_files.h"
@@ -47,6 +48,18 @@ TEST(ForeignHabits, ANameMayHaveBlanksOrQuotationMarksAroundIt) {
                   1u)
             << name;
     EXPECT_TRUE(convertForeign(squareOfLibrary(folder, "map_Kd \"\"\n")).scene.textures.empty());
+}
+
+// Editors write a mark before UTF-8.
+TEST(ForeignHabits, AMarkBeforeTheFirstWordIsPassedOver) {
+    const TemporaryFolder folder;
+    const std::string mark = "\xEF\xBB\xBF";
+    writeFile(folder, "red.mtl", mark + "newmtl m\nKd 1 0 0\n");
+    const std::string path =
+        writeFile(folder, "floor.obj", mark + "mtllib red.mtl\nusemtl m\n" + test::kFloorObj);
+    const Scene scene = convertForeign(path).scene;
+    EXPECT_EQ(scene.materials.at(0).baseColor, glm::vec4(1, 0, 0, 1));
+    EXPECT_THROW(convertForeign(writeFile(folder, "empty.obj", mark)), Error);
 }
 
 TEST(ForeignHabits, AMaterialLibraryThatIsMissingIsTold) {
