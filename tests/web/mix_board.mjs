@@ -11,6 +11,7 @@ import { join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
 
+const kPatience = 240000; // [ms], as software draws where other programs run
 const [page, jobFile, folder] = process.argv.slice(2);
 const job = JSON.parse(await readFile(jobFile, 'utf8'));
 const browser = await chromium.launch({
@@ -30,7 +31,7 @@ try {
         if (!/^(file|data|blob):/.test(request.url())) result.requests.push(request.url());
     });
     await tab.goto(pathToFileURL(page).href);
-    await tab.waitForSelector('body[data-ready], body[data-failed]', { state: 'attached', timeout: 240000 });
+    await tab.waitForSelector('body[data-ready], body[data-failed]', { state: 'attached', timeout: kPatience });
     result.failed = await tab.evaluate(() => document.body.dataset.failed ?? '');
     result.measured = await tab.evaluate(() => relume.page.measure());
     if (job.exposure !== undefined) await tab.evaluate((value) => relume.page.setExposure(value), job.exposure);
@@ -133,7 +134,7 @@ try {
         result.afterTap = await state();
     }
     await tab.evaluate(() => relume.page.drawNow(1));
-    await tab.screenshot({ path: join(folder, 'page.png') });
+    await tab.screenshot({ path: join(folder, 'page.png'), timeout: kPatience });
 } catch (error) {
     result.errors.push(error.message);
 } finally {

@@ -12,6 +12,7 @@ import { fileURLToPath } from 'node:url';
 import { chromium } from 'playwright-core';
 
 const [folder, page, picture, size] = process.argv.slice(2);
+const kPatience = 240000; // [ms], as software draws where other programs run
 const [width, height] = size.split('x').map(Number);
 const here = fileURLToPath(new URL('.', import.meta.url));
 const kinds = { '.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.json': 'application/json',
@@ -49,8 +50,8 @@ try {
         await route.fulfill({ body: await readFile(file), contentType: kindOf(file), headers: { 'access-control-allow-origin': '*' } });
     });
     await tab.goto(`http://127.0.0.1:${server.address().port}/${page}`);
-    await tab.waitForSelector('body[data-ready]', { state: 'attached', timeout: 240000 });
-    await tab.screenshot({ path: picture });
+    await tab.waitForSelector('body[data-ready]', { state: 'attached', timeout: kPatience });
+    await tab.screenshot({ path: picture, timeout: kPatience });
 } catch (error) {
     failed = true;
     console.error(error.message);
