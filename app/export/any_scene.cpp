@@ -81,8 +81,8 @@ std::vector<int> lightByEmission(EngineScene& level, const SurfaceLight& light,
         Material& material = scene.materials[i];
         if (material.pane) {
             material.emission *= factor;
-            // What transmits tints what is behind it by its colour. What blends shows the light that it has,
-            // and would be brighter by that of a viewer's surroundings.
+            // A pane that transmits tints what is behind it by its colour. One that blends shows the light
+            // that it has, and would be brighter by that of a viewer's surroundings.
             if (material.transmission <= 0.0f) reflectNothing(material);
             continue;
         }

@@ -23,7 +23,7 @@
 namespace relume::foreign {
 namespace {
 
-// What no scene here has.
+// These are parts that no scene here has.
 constexpr int kRemoved =
     aiComponent_BONEWEIGHTS | aiComponent_ANIMATIONS | aiComponent_TANGENTS_AND_BITANGENTS;
 

@@ -60,9 +60,8 @@ Taps smoothingTaps(uint own, ivec2 axis) {
         taps.index[t + reach] = own;
         taps.weight[t + reach] = t == 0 ? 1.0 : 0.0;
     }
-    // What stands between two patches parts their light, as a wall upon a floor that is one chart does. It
-    // hides texels, or the patches at its foot have it near: nothing counts beyond them, nor more than they
-    // allow.
+    // A wall upon a floor that is one chart parts the light of patches on both sides. It hides texels, or the
+    // patches at its foot have it near: nothing counts beyond them, nor more than they allow.
     float s0 = 1.0, s1 = 0.0, s2 = 0.0;
     for (int way = placed ? -1 : 3; way <= 1; way += 2) {
         float narrowest = falloff;

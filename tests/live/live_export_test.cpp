@@ -1,4 +1,4 @@
-// What is exported while a bake goes on, waits, fails or ends.
+// These tests export while a bake goes on, waits, fails or ends.
 #include "app/live/lightmap_export.h"
 #include "tests/live/live_bake_fixture.h"
 #include "tests/temporary_folder.h"

@@ -1,4 +1,4 @@
-// What is typed and chosen in panels and dialogs.
+// These tests type and choose in panels and dialogs.
 #include "tests/ui/file_drop.h"
 #include "tests/ui/viewer_fixture.h"
 

@@ -25,7 +25,7 @@ std::string withoutSlash(std::string path) {
     return path;
 }
 
-/// What the field's callback reads and changes.
+/// Holds what the field's callback reads and changes.
 struct Field {
     const PathCompletion& completion;
     bool& toEnd; // the cursor is to go there

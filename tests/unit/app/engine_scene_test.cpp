@@ -199,6 +199,16 @@ TEST(EngineScene, TexturesKeepTheirUvsBesideTheLightmaps) {
     EXPECT_TRUE(meshesWithThirdSet(engineScene(scene, three.atlas, kAmbient).scene).empty());
 }
 
+// Returns a lightmap of one texel that is lit.
+SurfaceLight oneTexel() {
+    SurfaceLight light;
+    light.size = 1;
+    light.reflected = {glm::vec3(6.0f)};
+    light.emitted = {glm::vec3(0.0f)};
+    light.material = {1};
+    return light;
+}
+
 TEST(AnyScene, WhateverShinesIsBroughtToTheScreen) {
     ThreeObjects three;
     three.scene.materials.push_back(three.scene.materials[0]);
@@ -207,12 +217,7 @@ TEST(AnyScene, WhateverShinesIsBroughtToTheScreen) {
     three.scene.meshes.push_back({"Window", {mappedSquare(1)}});
     three.scene.instances[1].mesh = 1;
     EngineScene level = engineScene(three.scene, three.atlas, kAmbient);
-    SurfaceLight light;
-    light.size = 1;
-    light.reflected = {glm::vec3(6.0f)};
-    light.emitted = {glm::vec3(0.0f)};
-    light.material = {1};
-    lightByEmission(level, light, three.scene.materials, -1.0f);
+    lightByEmission(level, oneTexel(), three.scene.materials, -1.0f);
     const auto emissionOf = [&](size_t object) {
         const auto mesh = static_cast<size_t>(level.scene.instances[object].mesh);
         const int material = level.scene.meshes[mesh].primitives[0].material;
@@ -256,12 +261,7 @@ TEST(AnyScene, PanesThatBlendReflectNothingAndThoseThatTransmitKeepTheirTint) {
         pane.baseColor = {0.5f, 0.7f, 1.0f, 0.3f};
         pane.transmission = transmission;
         EngineScene level = engineScene(three.scene, three.atlas, kAmbient);
-        SurfaceLight light;
-        light.size = 1;
-        light.reflected = {glm::vec3(6.0f)};
-        light.emitted = {glm::vec3(0.0f)};
-        light.material = {1};
-        lightByEmission(level, light, three.scene.materials, 0.0f);
+        lightByEmission(level, oneTexel(), three.scene.materials, 0.0f);
         for (const Material& material : level.scene.materials) {
             EXPECT_EQ(material.baseColor.a, 0.3f);
             EXPECT_EQ(glm::vec3(material.baseColor),
