@@ -13,13 +13,26 @@ using shader::kChunk;
 using shader::kReplicates;
 
 constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
-// A batch has so many chunks: their targets are 16 KiB each for 16 points.
-constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
+// Each of so few polygons that are all sampled gets as many points as there are links; each of more gets one
+// for each replicate.
+constexpr uint32_t kFewPolygons = 4;
+// A batch has so many chunks, where patches have no more targets than these: they are 1 KiB per chunk.
+constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512, kUsualTargets = 64;
+// More targets leave room for fewer chunks, but not for fewer than these: threads share them, and sample
+// passes that are taken together divide them further.
+constexpr uint32_t kFewestEmitterChunks = 128;
 
 // There is room for one chunk at least of sample passes that are taken together.
-uint32_t mostChunks(uint32_t chunkCount, bool software) {
-    return std::max(kMostTogether,
-                    std::min(chunkCount, software ? kSoftwareEmitterChunks : kGpuEmitterChunks));
+uint32_t emitterChunks(uint32_t chunkCount, bool software, uint32_t targets) {
+    const uint32_t usual = software ? kSoftwareEmitterChunks : kGpuEmitterChunks;
+    const uint32_t chunks =
+        std::max(kFewestEmitterChunks, usual * kUsualTargets / std::max(targets, kUsualTargets));
+    return std::max(kMostTogether, std::min(chunkCount, chunks));
+}
+
+// Makes the buffer anew where it is smaller.
+void reserve(const vk::Device& device, vk::Buffer& buffer, uint64_t size, const char* name) {
+    if (!buffer || buffer.size() < size) buffer = vk::Buffer(device, {.size = size, .name = name});
 }
 
 uint32_t wordsOfPoints(uint32_t targets) {
@@ -34,7 +47,7 @@ uint64_t wholeBytes(uint32_t chunkCount) {
 
 EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, const Desc& desc)
     : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
-      batchChunks_(mostChunks(patches.chunkCount(), device.info().software())),
+      batchChunks_(emitterChunks(patches.chunkCount(), device.info().software(), 0)),
       samples_(vk::ComputeProgram::builtAtFirstUse(device, "emitter_samples")),
       gather_(vk::ComputeProgram::builtAtFirstUse(device, "direct")) {}
 
@@ -51,17 +64,12 @@ void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     wholes_.group.reset();
     if (whole && !wholes_.light)
         wholes_.light = vk::Buffer(device_, {.size = wholeBytes(chunkCount_), .name = "whole mesh lights"});
+    batchChunks_ = emitterChunks(chunkCount_, device_.info().software(), targets);
     const uint64_t places = uint64_t{batchChunks_} * kChunk;
-    if (picks > picksRoom_) {
-        picksRoom_ = picks;
-        picks_ = vk::Buffer(device_, {.size = places * picks * sizeof(glm::vec4), .name = "picked emitters"});
-    }
-    if (targets <= targetsRoom_) return;
-    targetsRoom_ = targets;
-    const uint64_t words = wordsOfPoints(targets);
-    targets_ =
-        vk::Buffer(device_, {.size = places * targets * sizeof(glm::vec4), .name = "points on emitters"});
-    bits_ = vk::Buffer(device_, {.size = places * words * sizeof(uint32_t), .name = "seen points"});
+    if (picks > 0) reserve(device_, picks_, places * picks * sizeof(glm::vec4), "picked emitters");
+    if (targets == 0) return;
+    reserve(device_, targets_, places * targets * sizeof(glm::vec4), "points on emitters");
+    reserve(device_, bits_, places * wordsOfPoints(targets) * sizeof(uint32_t), "seen points");
 }
 
 EmitterLight::Group EmitterLight::makeGroup(const EmitterSet& set) const {
@@ -78,7 +86,9 @@ EmitterLight::Group EmitterLight::makeGroup(const EmitterSet& set) const {
 }
 
 EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, const Desc& desc) {
-    if (polygons <= kAllEmitters) return {.picks = polygons, .points = desc.links, .all = true};
+    if (polygons <= (desc.lightByLight ? kAllOfLight : kAllEmitters))
+        return {
+            .picks = polygons, .points = polygons <= kFewPolygons ? desc.links : kReplicates, .all = true};
     if (desc.lightByLight && polygons <= kMostOfWhole)
         return {.picks = std::max(desc.links, kReplicates), .points = 1, .all = false, .whole = true};
     return {
@@ -87,14 +97,14 @@ EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, const Desc& d
 
 uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, const Desc& desc, uint32_t polygons) {
     const Sampling sampling = samplingOf(polygons, desc);
-    const uint64_t places = uint64_t{mostChunks(chunkCount, software)} * kChunk;
+    const uint64_t places = uint64_t{emitterChunks(chunkCount, software, sampling.targets())} * kChunk;
     // A binary tree has fewer than two nodes per polygon.
     const uint64_t tables = polygons * (sizeof(shader::EmitterPolygon) + 2 * sizeof(shader::EmitterNode)) +
                             sizeof(shader::EmitterNode);
     // A polygon has four edges at most.
     const uint64_t edges = uint64_t{std::min(polygons, kMostOfWhole)} * 4 * sizeof(shader::EmitterEdge);
     // The largest light may be one that picks, while others have their whole light found.
-    const bool whole = desc.lightByLight && polygons > kAllEmitters;
+    const bool whole = desc.lightByLight && polygons > kAllOfLight;
     const uint64_t wholes = whole ? wholeBytes(chunkCount) + edges : 0;
     const uint32_t picks =
         std::max(sampling.picksRoom(), whole ? samplingOf(kMostOfWhole, desc).picksRoom() : 0u);

@@ -21,7 +21,7 @@ constexpr uint64_t kTurns = 2;
 SpilledBytes layerSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {
     constexpr uint32_t kPoints = LayerLights::kPoints;
     const uint64_t count = extent.patches(), chunks = extent.chunkCount;
-    const uint32_t polygons = extent.lights ? extent.lights->polygonsOfOne : EmitterLight::kAllEmitters;
+    const uint32_t polygons = extent.lights ? extent.lights->polygonsOfOne : EmitterLight::kAllOfLight;
     const LightExtent lights = extent.lights.value_or(LightExtent{});
     // Analytic lights have a group each while there is room for layers of all of them.
     const uint32_t one = lights.extended > 0 || (lights.points > 0 && settings.links.allOver)
