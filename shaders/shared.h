@@ -38,6 +38,7 @@ CONST uint kFlagBits = 7u;
 CONST uint kRotatePatch = 0u;
 CONST uint kRotateInterleaved = 1u;
 CONST uint kRotateTile = 2u;
+CONST uint kRotateAlone = 3u;
 
 // `closest` stores for a ray a patch index below kLinkFirstSpecial, or one of these.
 CONST uint kLinkFirstSpecial = 0xfffffff0u;

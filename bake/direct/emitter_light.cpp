@@ -13,9 +13,9 @@ using shader::kChunk;
 using shader::kReplicates;
 
 constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told from, stratified 2 x 2
-// Each of so few polygons that are all sampled gets as many points as there are links; each of more gets one
-// for each replicate.
-constexpr uint32_t kFewPolygons = 4;
+// Each of so few polygons that are all sampled gets as many points as there are links; each of more gets a
+// part of that.
+constexpr uint32_t kFewPolygons = 4, kPartOfLinks = 4;
 // A batch has so many chunks, where patches have no more targets than these: they are 1 KiB per chunk.
 constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512, kUsualTargets = 64;
 // More targets leave room for fewer chunks, but not for fewer than these: threads share them, and sample
@@ -87,8 +87,10 @@ EmitterLight::Group EmitterLight::makeGroup(const EmitterSet& set) const {
 
 EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, const Desc& desc) {
     if (polygons <= (desc.lightByLight ? kAllOfLight : kAllEmitters))
-        return {
-            .picks = polygons, .points = polygons <= kFewPolygons ? desc.links : kReplicates, .all = true};
+        return {.picks = polygons,
+                .points =
+                    polygons <= kFewPolygons ? desc.links : std::max(desc.links / kPartOfLinks, kReplicates),
+                .all = true};
     if (desc.lightByLight && polygons <= kMostOfWhole)
         return {.picks = std::max(desc.links, kReplicates), .points = 1, .all = false, .whole = true};
     return {

@@ -129,6 +129,7 @@ private:
                                    .chunkCount = batch.count,
                                    .firstSample = 0,
                                    .sampleCount = samples,
+                                   .rotation = Rotation::Alone, // faces are no texels
                                    .links = &links});
             vk::hostBarrier(cmd);
             commands_.run();
@@ -241,7 +242,7 @@ void ProbeTracer::setLamps(LampSet lamps) {
 
 glm::vec3 probeDirection(uint32_t probe, uint32_t face, uint32_t sample) {
     const Patch patch = faceOf(glm::vec3(0.0f), probe * kProbeFaces + face);
-    return shader::patchDirection(patch, shader::seedKey(patch), sample);
+    return shader::patchDirection(patch, shader::keyAlone(shader::seedKey(patch)), sample);
 }
 
 double probeSolidAngle(const glm::vec3& d, uint32_t samples) {

@@ -22,26 +22,29 @@ void ChunkRays::setPatches(const shader::Patch* patches, const shader::PatchCove
         frames_.nx[i] = patch.normal.x, frames_.ny[i] = patch.normal.y, frames_.nz[i] = patch.normal.z;
         offsets_[i] = patch.offset * patch.normal;
         const uint32_t key = shader::rotationKey(patch, patches[0], rotation, size);
+        const glm::uvec2 shift = shader::memberShift(key);
+        frames_.shiftX[i] = shift.x, frames_.shiftY[i] = shift.y;
         for (uint32_t r = 0; r < shader::kReplicates; ++r)
-            frames_.seed[r][i] = shader::replicateSeed(key, r);
+            frames_.seed[r][i] = disc_ ? shader::replicateSeed(key, r) : shader::directionSeed(key, r);
     }
 }
 
 namespace {
 
-// Makes one sample for a patch's seed, before it is turned to its normal. `cell` gets a place in the unit
-// square.
+// Makes one sample for patch i with its seed, before it is turned to its normal. `cell` gets a place in the
+// unit square.
 struct SobolLanes {
     uint32_t index;
-    [[gnu::always_inline]] glm::vec3 operator()(uint32_t seed, glm::vec2& cell) const {
-        cell = shader::sobolPoint(index, seed);
+    const uint32_t *shiftX, *shiftY;
+    [[gnu::always_inline]] glm::vec3 operator()(uint32_t i, uint32_t seed, glm::vec2& cell) const {
+        cell = shader::sobolPoint(index, seed, {shiftX[i], shiftY[i]});
         return shader::cosineDirection(cell);
     }
 };
 struct DiscLanes {
     const glm::vec2* points;
     uint32_t count, index;
-    [[gnu::always_inline]] glm::vec3 operator()(uint32_t seed, glm::vec2& cell) const {
+    [[gnu::always_inline]] glm::vec3 operator()(uint32_t, uint32_t seed, glm::vec2& cell) const {
         seed += shader::discTurn(index, count);
         const glm::vec3 d = shader::discDirection(points[shader::discPoint(index, count, seed)], count, seed);
         cell = glm::vec2(0.4999f * d.x + 0.5f, 0.4999f * d.y + 0.5f); // below 1
@@ -71,7 +74,7 @@ template<typename Lanes>
 #pragma GCC ivdep
     for (uint32_t i = 0; i < kChunk; ++i) {
         glm::vec2 u;
-        const glm::vec3 local = lanes(seed[i], u);
+        const glm::vec3 local = lanes(i, seed[i], u);
         const glm::vec3 d = shader::aroundNormal(glm::vec3(sx[i], sy[i], sz[i]), local);
         const float c = d.x * nx[i] + d.y * ny[i] + d.z * nz[i];
         const float mirror = c < 0.0f ? 2.0f * c : 0.0f;
@@ -125,7 +128,8 @@ void ChunkRays::fillDirections(uint32_t sample, uint32_t slot) {
     if (disc_)
         fillDisc(frames, seed, {disc_, discCount_, sample}, out, &cell_[slot]);
     else
-        fillSobol(frames, seed, {shader::replicateIndex(sample)}, out, &cell_[slot]);
+        fillSobol(frames, seed, {shader::replicateIndex(sample), f.shiftX.data(), f.shiftY.data()}, out,
+                  &cell_[slot]);
 }
 
 void ChunkRays::setSamples(uint32_t first, uint32_t count) {

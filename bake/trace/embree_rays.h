@@ -21,7 +21,8 @@ public:
     /// lightmap edge `size` [texels].
     void setPatches(const shader::Patch* patches, const shader::PatchCover* covers, uint32_t rotation,
                     uint32_t size);
-    /// Takes the directions from these points of the disc (shader::discDirection); they stay the caller's.
+    /// Takes the directions from these points of the disc (shader::discDirection), for patches that are set
+    /// from then on; they stay the caller's.
     void setDisc(const glm::vec2* points, uint32_t count) { disc_ = points, discCount_ = count; }
     /// Makes where rays start, and the directions of shader::patchDirection, or those of the disc, to the
     /// last bit or two.
@@ -48,6 +49,7 @@ private:
         Lane sx, sy, sz; // shading normals
         Lane nx, ny, nz; // geometric normals
         std::array<std::array<uint32_t, shader::kChunk>, shader::kReplicates> seed;
+        std::array<uint32_t, shader::kChunk> shiftX, shiftY; // shader::memberShift
     } frames_;
     ChunkStarts chunkStarts_;
     std::array<ChunkStarts::Points, kSamplesMax> starts_; // on the surface

@@ -407,8 +407,8 @@ void EmbreeScene::closest(const ClosestArrays& work) {
         const Patch* patches = receivers + firstPatch;
         const PatchCover* covers = work.covers && !work.receivers ? work.covers + firstPatch : nullptr;
         ChunkRays rays;
-        rays.setPatches(patches, covers, static_cast<uint32_t>(work.rotation), impl.scene.size);
         if (work.disc) rays.setDisc(work.disc, work.discCount);
+        rays.setPatches(patches, covers, static_cast<uint32_t>(work.rotation), impl.scene.size);
         rays.setSamples(work.firstSample + first, std::min(kPiece, work.sampleCount - first));
         impl.links(patches, rays, {rays.order().data(), rays.count()},
                    work.links + (size_t(chunk) * work.sampleCount + first) * kChunk);

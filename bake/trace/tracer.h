@@ -42,11 +42,13 @@ struct OcclusionWork {
 };
 
 /// Says which neighbouring patches have all their directions in common: none; those in the same place of
-/// their 4 x 4 texels; those of one chunk.
+/// their 4 x 4 texels; those of one chunk. Alone none have, either, nor do neighbours' directions complement
+/// each other: it is for what is asked of patches one by one, and for what is no texel.
 enum class Rotation : uint32_t {
     Patch = shader::kRotatePatch,
     Interleaved = shader::kRotateInterleaved,
-    Tile = shader::kRotateTile
+    Tile = shader::kRotateTile,
+    Alone = shader::kRotateAlone
 };
 
 /// Closest hits of cosine-distributed directions (shaders/lib/sampling.glsl) of some chunks: link of patch i

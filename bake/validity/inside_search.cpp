@@ -71,7 +71,7 @@ public:
                                   .chunkCount = range.count,
                                   .firstSample = firstDirection,
                                   .sampleCount = kStep,
-                                  .rotation = Rotation::Patch,
+                                  .rotation = Rotation::Alone,
                                   .links = &links_,
                                   .linksOffset = uint64_t{count} * kStep * kChunk});
             count += range.count;

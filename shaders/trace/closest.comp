@@ -23,8 +23,7 @@ shared uint order[kSamplesPerInvocation * kChunk];
 
 // Cells are in Morton order, so that neighbouring cells mostly follow each other.
 uint cellOf(uint key, uint index) {
-    vec2 u = push.discCount == 0u ? sobolPoint(replicateIndex(index), replicateSeed(key, index))
-                                  : 0.4999 * discSample(key, index).xy + 0.5;
+    vec2 u = push.discCount == 0u ? directionPoint(key, index) : 0.4999 * discSample(key, index).xy + 0.5;
     uvec2 c = uvec2(u * float(1u << kCellBits));
     c = (c | (c << 2u)) & 0x13u;
     c = (c | (c << 1u)) & 0x15u;

@@ -311,7 +311,8 @@ TEST(VoxelTracer, linksInABoxAreThePatchesThere) {
         for (uint32_t k = 0; k < kVoxelLinkSamples; ++k) {
             const uint32_t link = links[(i / kChunk * kVoxelLinkSamples + k) * kChunk + i % kChunk];
             ASSERT_LT(link, questions.patches().count) << "patch " << i << ", sample " << k;
-            const glm::vec3 d = shader::patchDirection(p, shader::seedKey(p), k);
+            const uint32_t key = shader::rotationKey(p, p, shader::kRotatePatch, maker.size());
+            const glm::vec3 d = shader::patchDirection(p, key, k);
             float t = 1e30f;
             for (int axis = 0; axis < 3; ++axis)
                 if (d[axis] != 0) t = std::min(t, ((d[axis] > 0 ? 1 : -1) - p.position[axis]) / d[axis]);

@@ -223,12 +223,14 @@ TEST(Hybrid, ManyEmittersAddUp) {
         SceneMaker maker(128);
         const TexelRect floor =
             maker.quad({-2, -2, 0}, 4.0f * kX, 4.0f * kY, maker.material(0.0f), glm::uvec2(24));
-        const glm::vec2 apart = rows.x == 8 ? glm::vec2(0.4f, 0.8f) : glm::vec2(0.2f, 0.25f);
+        const bool few = rows.x == 8;
+        const glm::vec2 apart = few ? glm::vec2(0.4f, 0.8f) : glm::vec2(0.2f, 0.25f);
+        const float step = few ? 0.1f : 0.0f; // so many would hide each other
         std::vector<glm::vec3> corners;
         for (int i = 0; i < rows.x * rows.y; ++i) {
             corners.emplace_back(-2.0f + apart.x * static_cast<float>(i % rows.x),
                                  -2.0f + apart.y * static_cast<float>(i / rows.x),
-                                 1.0f + 0.1f * static_cast<float>(i % 3));
+                                 1.0f + step * static_cast<float>(i % 3));
             maker.quad(corners.back(), 0.1f * kY, 0.1f * kX,
                        maker.material(0.0f, 1.0f + static_cast<float>(i)), glm::uvec2(2));
         }
@@ -252,14 +254,15 @@ TEST(Hybrid, ManyEmittersAddUp) {
 }
 
 // A wall hides half of sixteen panels from each half of the floor, and of the rest all is seen: so replicates
-// know each panel's share, and a single sample pass leaves no noise. Picks among them would leave a tenth.
+// know each panel's share, and a single sample pass leaves no noise, as picks among them would. Texels have
+// their means, and the middles' light is off by up to 0.3 %.
 TEST(Hybrid, LightsSeenOrHiddenAsAWholeAreExact) {
     SceneMaker maker(64);
     const TexelRect floor =
         maker.quad({-2, -2, 0}, 4.0f * kX, 4.0f * kY, maker.material(0.0f), glm::uvec2(24));
     const int black = maker.material(0.0f);
-    maker.blocker({0, -9, -1}, 18.0f * kY, 3.0f * kZ, black);
-    maker.blocker({0, -9, -1}, 3.0f * kZ, 18.0f * kY, black);
+    maker.blocker({0.01f, -9, -1}, 18.0f * kY, 3.0f * kZ, black); // they face away from each other
+    maker.blocker({-0.01f, -9, -1}, 3.0f * kZ, 18.0f * kY, black);
     std::vector<glm::vec3> corners;
     for (int i = 0; i < 16; ++i) {
         corners.emplace_back(-1.8f + 1.0f * static_cast<float>(i % 4),
@@ -280,7 +283,7 @@ TEST(Hybrid, LightsSeenOrHiddenAsAWholeAreExact) {
                          closed::integratedParallelogram(p, {0, 0, 1}, {c.x, c.y, c.z}, {0, 0.3, 0},
                                                          {0.3, 0, 0}, 1e-5);
             }
-            EXPECT_NEAR(texel(baked.lighting, floor, column, row), exact, 2e-3 * exact)
+            EXPECT_NEAR(texel(baked.lighting, floor, column, row), exact, 5e-3 * exact)
                 << column << ", " << row;
         }
     }

@@ -51,6 +51,112 @@ TEST(Sampling, meanOfManyScramblesIsTheIntegral) {
     EXPECT_NEAR(sum / (256 * 16), 1.0 / 6.0, 1e-3);
 }
 
+namespace {
+
+// Returns the points that samples 0 to `count` - 1 of one replicate have, of each texel of a block.
+std::vector<std::vector<glm::vec2>> pointsOfBlock(glm::uvec2 block, uint32_t size, uint32_t count) {
+    std::vector<std::vector<glm::vec2>> points;
+    for (uint32_t y = 0; y < shader::kBlockEdge; ++y) {
+        for (uint32_t x = 0; x < shader::kBlockEdge; ++x) {
+            const glm::uvec2 texel = block * shader::kBlockEdge + glm::uvec2(x, y);
+            const uint32_t key = shader::blockKey(texel.y * size + texel.x, size);
+            points.emplace_back();
+            for (uint32_t i = 0; i < count; ++i)
+                points.back().push_back(shader::directionPoint(key, i * shader::kReplicates));
+        }
+    }
+    return points;
+}
+
+// Tells whether all elementary intervals of 2^-bits have as many points.
+bool areEven(const std::vector<glm::vec2>& points, uint32_t bits) {
+    for (uint32_t xBits = 0; xBits <= bits; ++xBits) {
+        std::vector<size_t> found(size_t{1} << bits);
+        for (const glm::vec2& p : points)
+            ++found[uint32_t(p.x * float(1u << xBits)) << (bits - xBits) |
+                    uint32_t(p.y * float(1u << (bits - xBits)))];
+        for (const size_t count : found)
+            if (count << bits != points.size()) return false;
+    }
+    return true;
+}
+
+double inDisc(glm::vec2 p) {
+    return glm::distance(p, {0.4f, 0.3f}) < 0.45f ? 1.0 : 0.0;
+}
+
+} // namespace
+
+// A texel's own points are a (0, m, 2)-net as without a block; those of 2 x 2 and of 4 x 4 texels are (2, m,
+// 2)-nets.
+TEST(Sampling, PointsOfTexelsAreEvenAloneAndTogether) {
+    constexpr uint32_t size = 64, worst = 2; // worst: the t of the nets
+    for (const glm::uvec2 block : {glm::uvec2(0, 0), glm::uvec2(3, 7), glm::uvec2(15, 15)}) {
+        for (uint32_t m = 2; m <= 9; ++m) {
+            const auto points = pointsOfBlock(block, size, 1u << m);
+            std::vector<glm::vec2> all, quarter;
+            for (uint32_t i = 0; i < points.size(); ++i) {
+                EXPECT_TRUE(areEven(points[i], m)) << "texel " << i << ", 2^" << m << " points";
+                all.insert(all.end(), points[i].begin(), points[i].end());
+                const bool near = i % shader::kBlockEdge < 2 && i / shader::kBlockEdge < 2;
+                if (near) quarter.insert(quarter.end(), points[i].begin(), points[i].end());
+            }
+            EXPECT_TRUE(areEven(quarter, m + 2 - worst)) << "2^" << m << " points";
+            EXPECT_TRUE(areEven(all, m + 4 - worst)) << "2^" << m << " points";
+        }
+    }
+}
+
+TEST(Sampling, KeysTellTexelsApart) {
+    for (const uint32_t size : {8u, 37u, 64u}) { // 37 has blocks that are cut off
+        std::set<uint32_t> keys, seeds;
+        for (uint32_t texel = 0; texel < size * size; ++texel) {
+            keys.insert(shader::blockKey(texel, size));
+            seeds.insert(shader::directionSeed(shader::blockKey(texel, size), 0));
+        }
+        const uint32_t blocks = (size + shader::kBlockEdge - 1) / shader::kBlockEdge;
+        EXPECT_EQ(keys.size(), size * size);
+        EXPECT_EQ(seeds.size(), blocks * blocks);
+    }
+}
+
+// What is seen through an edge: a block's mean has half of the standard error that sixteen texels with
+// scramblings of their own have together, and single texels have as much as ever.
+TEST(Sampling, MeansOfBlocksAreLessNoisy) {
+    constexpr uint32_t size = 256, count = 16;
+    const double exact = [] {
+        double sum = 0;
+        constexpr uint32_t fine = 1024;
+        for (uint32_t i = 0; i < fine * fine; ++i)
+            sum += inDisc((glm::vec2(i % fine, i / fine) + 0.5f) / float(fine));
+        return sum / (fine * fine);
+    }();
+    double ofBlocks = 0, ofTexels = 0;
+    uint32_t blocks = 0;
+    for (uint32_t y = 0; y < size / shader::kBlockEdge; ++y) {
+        for (uint32_t x = 0; x < size / shader::kBlockEdge; ++x, ++blocks) {
+            double block = 0;
+            for (const std::vector<glm::vec2>& points : pointsOfBlock({x, y}, size, count)) {
+                double texel = 0;
+                for (const glm::vec2& p : points)
+                    texel += inDisc(p) / count;
+                block += texel / 16;
+                ofTexels += (texel - exact) * (texel - exact) / 16;
+            }
+            ofBlocks += (block - exact) * (block - exact);
+        }
+    }
+    EXPECT_LT(std::sqrt(ofBlocks), 0.6 * std::sqrt(ofTexels / 16));
+    double alone = 0;
+    for (uint32_t key = 0; key < 16 * blocks; ++key) {
+        double texel = 0;
+        for (uint32_t i = 0; i < count; ++i)
+            texel += inDisc(shader::directionPoint(shader::keyAlone(key), i * shader::kReplicates)) / count;
+        alone += (texel - exact) * (texel - exact) / 16;
+    }
+    EXPECT_NEAR(std::sqrt(ofTexels), std::sqrt(alone), 0.1 * std::sqrt(alone));
+}
+
 // With density cos / pi, the mean cosine is 2/3 and the mean of x^2 is 1/4.
 TEST(Sampling, cosineDirectionsHaveTheRightMoments) {
     double cosine = 0, x2 = 0, x = 0;
@@ -172,10 +278,12 @@ TEST(Sampling, interleavedPatchesShareTheirKeys) {
     first.flags = 5 << shader::kTexelShift;
     a.flags = (9 * size + 6) << shader::kTexelShift; // row 9, column 6
     b.flags = (13 * size + 2) << shader::kTexelShift;
-    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateInterleaved, size), 1u * 4 + 2);
-    EXPECT_EQ(shader::rotationKey(b, first, shader::kRotateInterleaved, size), 1u * 4 + 2);
-    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotatePatch, size), 9 * size + 6);
-    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateTile, size), 5u);
+    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateInterleaved, size), shader::keyAlone(1 * 4 + 2));
+    EXPECT_EQ(shader::rotationKey(b, first, shader::kRotateInterleaved, size), shader::keyAlone(1 * 4 + 2));
+    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotatePatch, size),
+              shader::blockKey(9 * size + 6, size));
+    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateAlone, size), shader::keyAlone(9 * size + 6));
+    EXPECT_EQ(shader::rotationKey(a, first, shader::kRotateTile, size), shader::keyAlone(5));
 }
 
 } // namespace

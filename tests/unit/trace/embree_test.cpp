@@ -333,7 +333,8 @@ TEST(Embree, linksOfADiscAreThoseOfBruteForce) {
         const Patch& patch = scene.patches[i];
         if (!(patch.flags & shader::kPatchSends)) continue;
         const uint32_t k = i % 8, index = 16 + k;
-        const uint32_t seed = shader::discSeed(shader::seedKey(patch), index, count);
+        const uint32_t key = shader::rotationKey(patch, patch, shader::kRotatePatch, scene.size);
+        const uint32_t seed = shader::discSeed(key, index, count);
         const glm::vec3 local =
             shader::discDirection(disc[shader::discPoint(index, count, seed)], count, seed);
         wrong += linkOf(links, i, k) != all.link(patch, shader::aroundPatch(patch, local));
