@@ -285,7 +285,8 @@ TEST(Bvh, raysFromASurfaceDoNotHitIt) {
     for (size_t i = 0; i < 6 * 512; i += 7) { // the walls
         const shader::Patch& patch = scene.patches[i];
         for (uint32_t k = 0; k < 4; ++k) {
-            const glm::vec3 direction = shader::patchDirection(patch, shader::keyAlone(shader::seedKey(patch)), k);
+            const glm::vec3 direction =
+                shader::patchDirection(patch, shader::keyAlone(shader::seedKey(patch)), k);
             const auto found =
                 walk.bvhClosestHit(patch.position + patch.offset * patch.normal, direction, 0, 1e30f);
             ASSERT_NE(found.triangle, shader::kNoPatch);
