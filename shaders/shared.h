@@ -34,7 +34,7 @@ CONST uint kTexelShift = 3u;    // above these bits stands the patch's texel
 CONST uint kFlagBits = 7u;
 
 // These say which neighbouring patches have all their directions in common: none; those in the same place of
-// their 4 x 4 texels; those of one chunk.
+// their 4 x 4 texels; those of one chunk; none, and neighbours' directions do not complement each other.
 CONST uint kRotatePatch = 0u;
 CONST uint kRotateInterleaved = 1u;
 CONST uint kRotateTile = 2u;

@@ -17,8 +17,8 @@ namespace relume {
 /// groups, each sampled by itself: for each group record samples, trace segments(), then gather.
 class EmitterLight {
 public:
-    /// Takes the directions per sample pass: mesh lights get about as many points, but at least those of one
-    /// pick for each replicate.
+    /// Takes the directions per sample pass: what is picked gets about as many points, but at least those of
+    /// one pick for each replicate; each polygon of those that are all sampled gets as many or a quarter.
     struct Desc {
         uint32_t links = 0;
         bool allOver = false; // samples start all over their texels (LightBuffers::covers)

@@ -120,7 +120,7 @@ TEST(Sampling, KeysTellTexelsApart) {
     }
 }
 
-// What is seen through an edge: a block's mean has half of the standard error that sixteen texels with
+// The mean of a block of what is seen through an edge has half of the standard error that sixteen texels with
 // scramblings of their own have together, and single texels have as much as ever.
 TEST(Sampling, MeansOfBlocksAreLessNoisy) {
     constexpr uint32_t size = 256, count = 16;
