@@ -192,10 +192,11 @@ WholeBake runBake(BakeOptions o, double startSeconds, Ranks& ranks) {
     }
     Baker baker(device, prepared.scene, std::move(prepared.mesh), request.bake);
     phases.insert(phases.end(), baker.phases().begin(), baker.phases().end());
+    phase.reset();
+    sharing.meet(); // a signal that comes after the next line finds all ranks past what it would end at once
     spdlog::info("{} patches", baker.patches().count);
     warnIfDark(prepared.scene, baker.patches());
     checkpoints.begin(baker, prepared.scene, request.bake, device.info());
-    phase.reset();
     clock.restart();
     solve(baker.solver(), request.bake.solver, checkpoints, sharing);
     clock.end("solve");

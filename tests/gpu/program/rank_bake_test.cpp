@@ -338,6 +338,7 @@ TEST_F(RankCheckpoint, OfPairsIsTakenUpBySeveralAndByFewer) {
         const RankWords words = bake("first.exr", options({"--checkpoint", file(), "--batch-ms", "1"}));
         const ProcessResult first = count == 1 ? runRelume(words, stop) : mpirun(count, words, stop);
         EXPECT_EQ(first.status, 1) << first.err;
+        ASSERT_TRUE(contains(first.err, "go on with --resume")) << count << " processes\n" << first.err;
         expectGoesOn({3});
         std::filesystem::remove(file());
     }
