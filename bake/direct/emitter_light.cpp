@@ -16,17 +16,20 @@ constexpr uint32_t kPointsPerPick = 4; // the fewest that a share can be told fr
 // Each of so few polygons that are all sampled gets as many points as there are links; each of more gets a
 // part of that.
 constexpr uint32_t kFewPolygons = 4, kPartOfLinks = 4;
-// A batch has so many chunks, where patches have no more targets than these: they are 1 KiB per chunk.
-constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512, kUsualTargets = 64;
+// A batch has so many chunks, where patches have no more targets than these, which take 1 KiB per chunk each;
+// a single light has few.
+constexpr uint32_t kGpuEmitterChunks = 8192, kSoftwareEmitterChunks = 512;
+constexpr uint32_t kUsualTargets = 64, kUsualTargetsOfLight = 16;
 // More targets leave room for fewer chunks, but not for fewer than these: threads share them, and sample
 // passes that are taken together divide them further.
 constexpr uint32_t kFewestEmitterChunks = 128;
 
 // There is room for one chunk at least of sample passes that are taken together.
-uint32_t emitterChunks(uint32_t chunkCount, bool software, uint32_t targets) {
+uint32_t emitterChunks(uint32_t chunkCount, bool software, bool lightByLight, uint32_t targets) {
     const uint32_t usual = software ? kSoftwareEmitterChunks : kGpuEmitterChunks;
+    const uint32_t usualTargets = lightByLight ? kUsualTargetsOfLight : kUsualTargets;
     const uint32_t chunks =
-        std::max(kFewestEmitterChunks, usual * kUsualTargets / std::max(targets, kUsualTargets));
+        std::max(kFewestEmitterChunks, usual * usualTargets / std::max(targets, usualTargets));
     return std::max(kMostTogether, std::min(chunkCount, chunks));
 }
 
@@ -47,7 +50,7 @@ uint64_t wholeBytes(uint32_t chunkCount) {
 
 EmitterLight::EmitterLight(const vk::Device& device, const PatchSet& patches, const Desc& desc)
     : device_(device), desc_(desc), chunkCount_(patches.chunkCount()),
-      batchChunks_(emitterChunks(patches.chunkCount(), device.info().software(), 0)),
+      batchChunks_(emitterChunks(patches.chunkCount(), device.info().software(), desc.lightByLight, 0)),
       samples_(vk::ComputeProgram::builtAtFirstUse(device, "emitter_samples")),
       gather_(vk::ComputeProgram::builtAtFirstUse(device, "direct")) {}
 
@@ -64,7 +67,7 @@ void EmitterLight::setGroups(const std::vector<EmitterSet>& groups) {
     wholes_.group.reset();
     if (whole && !wholes_.light)
         wholes_.light = vk::Buffer(device_, {.size = wholeBytes(chunkCount_), .name = "whole mesh lights"});
-    batchChunks_ = emitterChunks(chunkCount_, device_.info().software(), targets);
+    batchChunks_ = emitterChunks(chunkCount_, device_.info().software(), desc_.lightByLight, targets);
     const uint64_t places = uint64_t{batchChunks_} * kChunk;
     if (picks > 0) reserve(device_, picks_, places * picks * sizeof(glm::vec4), "picked emitters");
     if (targets == 0) return;
@@ -99,20 +102,25 @@ EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, const Desc& d
 
 uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, const Desc& desc, uint32_t polygons) {
     const Sampling sampling = samplingOf(polygons, desc);
-    const uint64_t places = uint64_t{emitterChunks(chunkCount, software, sampling.targets())} * kChunk;
+    uint32_t targets = sampling.targets(), picks = sampling.picksRoom();
     // A binary tree has fewer than two nodes per polygon.
     const uint64_t tables = polygons * (sizeof(shader::EmitterPolygon) + 2 * sizeof(shader::EmitterNode)) +
                             sizeof(shader::EmitterNode);
     // A polygon has four edges at most.
     const uint64_t edges = uint64_t{std::min(polygons, kMostOfWhole)} * 4 * sizeof(shader::EmitterEdge);
-    // The largest light may be one that picks, while others have their whole light found.
-    const bool whole = desc.lightByLight && polygons > kAllOfLight;
-    const uint64_t wholes = whole ? wholeBytes(chunkCount) + edges : 0;
-    const uint32_t picks =
-        std::max(sampling.picksRoom(), whole ? samplingOf(kMostOfWhole, desc).picksRoom() : 0u);
+    uint64_t wholes = 0;
+    if (desc.lightByLight && polygons > kAllOfLight) {
+        // The largest light may be one that picks, while others have their whole light found, or all of
+        // their polygons sampled.
+        wholes = wholeBytes(chunkCount) + edges;
+        const Sampling all = samplingOf(kAllOfLight, desc);
+        targets = std::max(targets, all.targets());
+        picks = std::max({picks, all.picksRoom(), samplingOf(kMostOfWhole, desc).picksRoom()});
+    }
+    const uint64_t places =
+        uint64_t{emitterChunks(chunkCount, software, desc.lightByLight, targets)} * kChunk;
     return tables + wholes +
-           places * ((picks + sampling.targets()) * sizeof(glm::vec4) +
-                     wordsOfPoints(sampling.targets()) * sizeof(uint32_t));
+           places * ((picks + targets) * sizeof(glm::vec4) + wordsOfPoints(targets) * sizeof(uint32_t));
 }
 
 // Tells whether any of the chunks is not known yet; they are from then on.

@@ -19,7 +19,7 @@ namespace {
 
 // The file has a magic, then sections, each behind its number of bytes as 64 bits: version, settings, scene,
 // counters, pass times, the solver's own struct and its parts; last comes the hash of all before it.
-constexpr std::string_view kMagic = "relume checkpoint 10\n", kMagicName = "relume checkpoint ";
+constexpr std::string_view kMagic = "relume checkpoint 11\n", kMagicName = "relume checkpoint ";
 static_assert(std::endian::native == std::endian::little, "files are little endian");
 static_assert(std::is_trivially_copyable_v<SolverCounters>);
 
