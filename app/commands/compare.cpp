@@ -160,6 +160,15 @@ void printTable(const CompareOptions& options, const Measured& measured,
                     difference->quantity.c_str());
 }
 
+// A file that another program wrote may have several pages side by side and not say so: hence no error.
+void warnOfPages(const CompareOptions& options, const FloatImage& a, const FloatImage& b) {
+    const uint32_t ofA = lightmapPagesOf(a).count, ofB = lightmapPagesOf(b).count;
+    if (ofA == ofB) return;
+    spdlog::warn("{} has {} page{}, {} has {}: texels in the same place belong to different surfaces, unless "
+                 "one file has all pages side by side; bake both on as many pages",
+                 options.a, ofA, ofA == 1 ? "" : "s", options.b, ofB);
+}
+
 void runCompare(const CompareOptions& options) {
     if (!options.darkBy.empty() && !wants(options, "dark"))
         throw UsageError("--dark-by: only with --metric dark, others look at all texels");
@@ -179,6 +188,7 @@ void runCompare(const CompareOptions& options) {
     const FloatImage maskImage = options.mask.empty() ? FloatImage() : readImageOrPages(options.mask);
     const NamedImage mask{maskImage, options.mask};
     const ImagePair pair({a, options.a}, {b, options.b}, options.mask.empty() ? nullptr : &mask);
+    warnOfPages(options, a, b);
     Measured measured{.all = pair.measure(), .flipMean = 0, .local = {}, .darkBias = 0};
     if (wants(options, "dark")) {
         const FloatImage byImage = options.darkBy.empty() ? FloatImage() : readImageOrPages(options.darkBy);

@@ -37,7 +37,9 @@ protected:
     /// Bakes onto pages; returns the path that stands for all of them.
     std::string bake(const std::string& name, const PageWords& more = {}, const std::string& pages = "3",
                      const std::string& scene = kScene) const {
-        PageWords words = {"bake", scene, "--size", "48", "-o", path(name)};
+        PageWords words = {"bake", scene, "-o", path(name)};
+        if (std::find(more.begin(), more.end(), "--size") == more.end())
+            words.insert(words.end(), {"--size", "48"});
         if (std::find(more.begin(), more.end(), "--samples") == more.end())
             words.insert(words.end(), {"--samples", "16"});
         if (!pages.empty()) words.insert(words.end(), {"--pages", pages});
@@ -76,6 +78,7 @@ TEST_F(PagedFiles, ASceneThatIsWrittenWithThemHasTheSameLight) {
     EXPECT_EQ(allBytes(bake("c.exr", {"--scene-out", lit})), allBytes(path("a.exr")));
     const ProcessResult compared = run({"compare", path("a.exr"), path("b.exr"), "--metric", "maximum"});
     EXPECT_EQ(compared.out, "0\n");
+    EXPECT_FALSE(contains(compared.err, "page")) << compared.err;
     // Pictures are lit by all pages, and by none alone.
     run({"shot", lit, "--lightmap", path("b.exr"), "--size", "64x48", "-o", path("b.png")});
     run({"shot", kScene, "--lightmap", path("a.exr"), "--size", "64x48", "-o", path("a.png")});
@@ -85,6 +88,15 @@ TEST_F(PagedFiles, ASceneThatIsWrittenWithThemHasTheSameLight) {
     EXPECT_EQ(one.status, 1);
     EXPECT_TRUE(contains(one.err, "is page 1 of a lightmap of 3: name all of them as " + path("b.exr")))
         << one.err;
+}
+
+// One page may be as large as the sheet of several.
+TEST_F(PagedFiles, AreNotComparedWithOnePageInSilence) {
+    bake("several.exr");
+    bake("one.exr", {"--size", "96"}, "1");
+    const ProcessResult compared = run({"compare", path("one.exr"), path("several.exr")});
+    EXPECT_TRUE(contains(compared.err, "one.exr has 1 page, ")) << compared.err;
+    EXPECT_TRUE(contains(compared.err, "several.exr has 3: ")) << compared.err;
 }
 
 TEST_F(PagedFiles, AreTheSameBytesAfterAResume) {
