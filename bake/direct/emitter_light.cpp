@@ -101,26 +101,30 @@ EmitterLight::Sampling EmitterLight::samplingOf(uint32_t polygons, const Desc& d
 }
 
 uint64_t EmitterLight::bytes(uint32_t chunkCount, bool software, const Desc& desc, uint32_t polygons) {
-    const Sampling sampling = samplingOf(polygons, desc);
-    uint32_t targets = sampling.targets(), picks = sampling.picksRoom();
+    const auto batch = [&](const Sampling& sampling, uint32_t picks) {
+        const uint32_t targets = sampling.targets();
+        const uint64_t places =
+            uint64_t{emitterChunks(chunkCount, software, desc.lightByLight, targets)} * kChunk;
+        return places * ((picks + targets) * sizeof(glm::vec4) + wordsOfPoints(targets) * sizeof(uint32_t));
+    };
+    const Sampling largest = samplingOf(polygons, desc);
+    uint64_t batches = batch(largest, largest.picksRoom()), wholes = 0;
     // A binary tree has fewer than two nodes per polygon.
     const uint64_t tables = polygons * (sizeof(shader::EmitterPolygon) + 2 * sizeof(shader::EmitterNode)) +
                             sizeof(shader::EmitterNode);
-    // A polygon has four edges at most.
-    const uint64_t edges = uint64_t{std::min(polygons, kMostOfWhole)} * 4 * sizeof(shader::EmitterEdge);
-    uint64_t wholes = 0;
     if (desc.lightByLight && polygons > kAllOfLight) {
-        // The largest light may be one that picks, while others have their whole light found, or all of
-        // their polygons sampled.
-        wholes = wholeBytes(chunkCount) + edges;
-        const Sampling all = samplingOf(kAllOfLight, desc);
-        targets = std::max(targets, all.targets());
-        picks = std::max({picks, all.picksRoom(), samplingOf(kMostOfWhole, desc).picksRoom()});
+        // The largest light may be one that picks, while others have their whole light found, or all of their
+        // polygons sampled: what a batch has room for then depends on which others there are.
+        const uint32_t ofWhole = samplingOf(kMostOfWhole, desc).picksRoom();
+        for (uint32_t others = 1; others <= kAllOfLight; ++others) {
+            const Sampling all = samplingOf(others, desc);
+            batches = std::max(batches, batch(all, std::max(all.picksRoom(), ofWhole)));
+        }
+        // A polygon has four edges at most.
+        wholes = wholeBytes(chunkCount) +
+                 uint64_t{std::min(polygons, kMostOfWhole)} * 4 * sizeof(shader::EmitterEdge);
     }
-    const uint64_t places =
-        uint64_t{emitterChunks(chunkCount, software, desc.lightByLight, targets)} * kChunk;
-    return tables + wholes +
-           places * ((picks + targets) * sizeof(glm::vec4) + wordsOfPoints(targets) * sizeof(uint32_t));
+    return tables + wholes + batches;
 }
 
 // Tells whether any of the chunks is not known yet; they are from then on.

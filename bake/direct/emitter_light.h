@@ -65,9 +65,9 @@ public:
     /// times the rays that all of them take.
     static constexpr uint32_t kAllEmitters = 256;
     /// Light by light all of so few are sampled. Picks take fewer rays of a sample pass, but leave noise
-    /// where some polygons are seen and others are hidden: lamps of 12 polygons took 1.7 to 3 times the rays,
-    /// of 32 twice as many and of 128 half as many, in 1.1 times the time on a GPU; a town's lamps of 100
-    /// polygons took 0.7 times the time by picks.
+    /// where some polygons are seen and others are hidden: lamps of up to 12 polygons took 1.4 to 4 times the
+    /// rays, and of 32 2.5 times; of 128 half as many, in 1.1 times the time on a GPU, where a town's lamps
+    /// of 100 took 0.7 times the time.
     static constexpr uint32_t kAllOfLight = 64;
     /// Each patch finds what all polygons of a light bring without shadows, where these are no more.
     static constexpr uint32_t kMostOfWhole = 1024;

@@ -2,6 +2,7 @@
 #include "assets/atlas/lightmap_atlas.h"
 #include "bake/baker/make_solver.h"
 #include "bake/baker/memory_plan.h"
+#include "bake/direct/emitter_light.h"
 #include "bake/gather/coarse_patches.h"
 #include "bake/gather/link_cache.h"
 #include "bake/layers/layer_bounces.h"
@@ -131,6 +132,12 @@ Taken measure(const Scene& scene, const BakeDesc& desc, PatchSet& patches) {
 void expectClose(uint64_t estimate, uint64_t taken, const char* what) {
     EXPECT_GE(estimate, taken) << what;
     EXPECT_LE(static_cast<double>(estimate), (1.0 + kTolerance) * static_cast<double>(taken)) << what;
+}
+
+EmitterSet lightOf(uint32_t polygons) {
+    return {.polygons = std::vector<shader::EmitterPolygon>(polygons, shader::EmitterPolygon{}),
+            .nodes = std::vector<shader::EmitterNode>(2 * polygons - 1, shader::EmitterNode{}),
+            .power = 1.0};
 }
 
 struct MemoryCase {
@@ -274,6 +281,29 @@ TEST(BakeMemory, ASizeThatDoesNotFitIsRefusedWithOneThatDoes) {
     EXPECT_NE(problemNow(), "");
     room.device = 0;
     EXPECT_NE(problemNow().find("no size fits"), std::string::npos);
+}
+
+// How many chunks a batch has depends on the light that has most points, and what each has room for on all:
+// beside a light that picks others take the most where they have four polygons, on a CPU where they have
+// most.
+TEST(EmitterMemory, IsEnoughForLightsOfAnySizesSideBySide) {
+    constexpr uint32_t kChunks = 9000, kMany = 100; // more than any device's batch; they pick
+    PatchSet patches;
+    patches.scene.patches.resize(size_t{kChunks} * shader::kChunk);
+    const EmitterLight::Desc desc{.links = shader::kReplicates, .lightByLight = true};
+    const uint64_t estimate = EmitterLight::bytes(kChunks, testDevice().info().software(), desc, kMany);
+    uint64_t most = 0;
+    for (const uint32_t others : {1u, 4u, 8u, EmitterLight::kAllOfLight}) {
+        EmitterLight lights(testDevice(), patches, desc);
+        lights.setGroups({lightOf(kMany), lightOf(others)});
+        ASSERT_TRUE(lights.picks(0) && !lights.picks(1));
+        const uint64_t taken =
+            bytesNamed(testDevice().ledger(), std::array{"whole mesh lights", "picked emitters",
+                                                         "points on emitters", "seen points"});
+        EXPECT_LE(taken, estimate) << others;
+        most = std::max(most, taken);
+    }
+    EXPECT_LE(static_cast<double>(estimate), (1.0 + kTolerance) * static_cast<double>(most));
 }
 
 } // namespace relume
