@@ -2,6 +2,7 @@
 
 #include "app/export/engine_texts.h"
 #include "assets/base/error.h"
+#include "assets/images/float_image.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +28,14 @@ std::string inMarkup(std::string name) {
 // equation 85], which is what Bevy does.
 float ev100Of(float exposure) {
     return -exposure - std::log2(1.2f);
+}
+
+// Returns what a screen shows of light, in sRGB that goes on above white.
+glm::dvec3 shownColour(const glm::vec3& light, float exposure) {
+    glm::dvec3 colour = glm::dvec3(light) * std::exp2(double{exposure});
+    for (int c = 0; c < 3; ++c)
+        colour[c] = srgbFromLinear(colour[c]);
+    return colour;
 }
 
 // Returns what stands between quotes for a name, in GDScript, C#, and Rust.
@@ -108,6 +117,8 @@ std::vector<EngineFile> engineFiles(Engine engine, const EngineFacts& facts) {
         replaceAll(file.text, "@FACTOR@", fmt::format("{:.6g}", std::exp2(facts.exposure)));
         replaceAll(file.text, "@SKY@",
                    fmt::format("[{:.6g}, {:.6g}, {:.6g}]", facts.sky.r, facts.sky.g, facts.sky.b));
+        const glm::dvec3 sky = shownColour(facts.sky, facts.exposure);
+        replaceAll(file.text, "@SKY_COLOUR@", fmt::format("{:.6g}, {:.6g}, {:.6g}", sky.r, sky.g, sky.b));
         file.text = forMaterials(file.text, facts.lit);
         out.push_back(std::move(file));
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -166,6 +167,46 @@ void blendWhatTransmits(Scene& scene) {
         material.alphaMode = AlphaMode::Blend;
         material.transmission = 0.0f;
     }
+}
+
+namespace {
+
+// Returns the transform through which all of a material's textures read TEXCOORD_0; nothing where they have
+// several.
+std::optional<glm::mat3> commonTransform(const Material& material) {
+    std::optional<glm::mat3> common;
+    for (const TextureRef* use : textureUses(material)) {
+        if (use->texture < 0 || use->texCoord != 0) continue;
+        if (common && *common != use->transform) return std::nullopt;
+        common = use->transform;
+    }
+    return common.value_or(glm::mat3(1.0f));
+}
+
+} // namespace
+
+std::vector<std::string> applyTextureTransforms(Scene& scene) {
+    std::vector<std::string> several;
+    std::vector<glm::mat3> transforms; // by material
+    for (Material& material : scene.materials) {
+        const std::optional<glm::mat3> common = commonTransform(material);
+        transforms.push_back(common.value_or(glm::mat3(1.0f)));
+        if (!common) {
+            several.push_back(material.name);
+            continue;
+        }
+        for (TextureRef* use : textureUses(material))
+            if (use->texCoord == 0) use->transform = glm::mat3(1.0f);
+    }
+    for (Mesh& mesh : scene.meshes) {
+        for (Primitive& primitive : mesh.primitives) {
+            const glm::mat3& transform = transforms[static_cast<size_t>(primitive.material)];
+            if (transform == glm::mat3(1.0f)) continue;
+            for (glm::vec2& uv : primitive.texCoord0)
+                uv = glm::vec2(transform * glm::vec3(uv, 1.0f));
+        }
+    }
+    return several;
 }
 
 std::vector<std::string> meshesWithThirdSet(const Scene& scene) {

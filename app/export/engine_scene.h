@@ -27,6 +27,10 @@ EngineScene engineScene(const Scene& scene, const LightmapAtlas& atlas, const gl
 /// Makes panes that transmit ones that blend, for engines that do not show what is behind the former.
 void blendWhatTransmits(Scene& scene);
 
+/// Makes UVs those that textures read through KHR_texture_transform, for engines that do not know all of it.
+/// Returns the names of materials whose textures read one set through several: these stay as they are.
+std::vector<std::string> applyTextureTransforms(Scene& scene);
+
 /// Returns the names of meshes with a texture that reads TEXCOORD_2, each once: glTF asks engines to read two
 /// sets, of which the lightmap has one.
 std::vector<std::string> meshesWithThirdSet(const Scene& scene);

@@ -73,12 +73,16 @@ glm::vec3 meanOf(const Sky& sky) {
     return sky.radiance * glm::vec3(sum / weights);
 }
 
-// Brings emission to the screen, for an importer that knows none above 1.
+// Brings emission to the screen.
 void exposeEmission(Scene& scene, float exposure) {
-    for (Material& material : scene.materials) {
+    for (Material& material : scene.materials)
         material.emission *= std::exp2(exposure);
+}
+
+// Ends what a screen shows at white, for an importer that knows no emission above 1.
+void endEmissionAtWhite(Scene& scene) {
+    for (Material& material : scene.materials)
         material.emission /= std::max({1.0f, material.emission.r, material.emission.g, material.emission.b});
-    }
 }
 
 // three.js reads four sets of UVs, Babylon.js six and Blender eight; glTF promises two.
@@ -86,8 +90,8 @@ bool readsThirdSet(Engine engine) {
     return engine == Engine::Three || engine == Engine::Babylon || engine == Engine::Blender;
 }
 
-// Godot is taken to pass over KHR_materials_transmission, which was not tried in it, and PlayCanvas shows
-// glass as black where no camera keeps what is behind it.
+// Godot passes over KHR_materials_transmission, and PlayCanvas shows glass as black where no camera keeps
+// what is behind it.
 bool showsTransmission(Engine engine) {
     return engine != Engine::Godot && engine != Engine::PlayCanvas;
 }
@@ -228,6 +232,13 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     result.exposure = desc.exposure.value_or(exposureOf(light));
     EngineScene level = engineScene(scene, atlas, meanLight(lightmap, light));
     if (!showsTransmission(desc.engine)) blendWhatTransmits(level.scene);
+    if (desc.engine ==
+        Engine::Godot) // it knows no rotation, and one transform for all textures of a material
+        for (const std::string& name : applyTextureTransforms(level.scene))
+            spdlog::warn(
+                "{}: material {} has textures of several texture transforms, of which godot reads one: "
+                "give them the same",
+                scene.path, inQuotes(name));
     const std::vector<FloatImage> pages = pagesOf(lightmap);
     if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(source.mesh));
     if (!readsThirdSet(desc.engine))
@@ -243,7 +254,9 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
         addLightmap(level.scene, pages, look);
         look.lit = level.lit;
         look.page = level.page;
-        if (desc.engine == Engine::Unity) exposeEmission(level.scene, result.exposure);
+        if (desc.engine == Engine::Unity || desc.engine == Engine::Godot)
+            exposeEmission(level.scene, result.exposure);
+        if (desc.engine == Engine::Unity) endEmissionAtWhite(level.scene);
     }
 
     const fs::path folder = desc.folder;

@@ -243,19 +243,18 @@ TEST_F(ExportCommand, BevysFormulaGivesTheLightThatLeavesTheSurfaces) {
     });
 }
 
-// Godot shows (emission + lightmap x albedo x (1 - metallic)) x tonemap_exposure; "Linear" and "AgX" multiply
-// alike before their curves.
+// Godot shows emission, which is exposed in the file, + lightmap x EXPOSURE x albedo x (1 - metallic).
 TEST_F(ExportCommand, GodotsFormulaGivesTheLightThatLeavesTheSurfaces) {
     bake();
     const std::string folder = exported("godot", {"--exposure", "-2"});
     const FloatImage light = readImage(folder + "lightmap.exr"), right = readImage(path("radiance.exr"));
-    const double factor = numberBetween(bytesOf(folder + "level.tscn"), "tonemap_exposure = ");
+    const double factor = numberBetween(bytesOf(folder + "level.gd"), "EXPOSURE := ");
     EXPECT_NEAR(factor, 0.25, 1e-6);
     forWalls(folder + "scene.glb", [&](size_t i, const Material& material) {
         for (int c = 0; c < 3; ++c) {
             const double shown =
-                factor * double(material.emission[c] + light.planes[size_t(c)][i] * material.baseColor[c] *
-                                                           (1.0f - material.metallic));
+                double(material.emission[c]) + factor * double(light.planes[size_t(c)][i]) *
+                                                   double(material.baseColor[c] * (1.0f - material.metallic));
             const double ours = 0.25 * double(right.planes[size_t(c)][i]);
             ASSERT_NEAR(shown, ours, 0.004 * ours) << material.name;
         }

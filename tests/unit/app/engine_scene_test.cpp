@@ -228,6 +228,42 @@ TEST(AnyScene, WhateverShinesIsBroughtToTheScreen) {
     EXPECT_EQ(emissionOf(2), glm::vec3(0.5f, 0.5f, 4.0f)); // without UVs
 }
 
+// Godot knows no rotation.
+TEST(EngineScene, TransformsThatTexturesShareGoIntoTheirUvs) {
+    Scene scene;
+    scene.textures = {{.image = 0}};
+    const glm::mat3 turned(0, -2, 0, 2, 0, 0, 0.5f, 0.25f, 1); // (x, y) to (2 y + .5, .25 - 2 x)
+    scene.materials.resize(3);
+    scene.materials[0].baseColorTexture = {0, 0, turned};
+    scene.materials[0].emissionTexture = {0, 0, turned};
+    scene.materials[1].baseColorTexture = {0, 0, turned};
+    scene.materials[1].emissionTexture = {0, 0, glm::mat3(1.0f)};
+    scene.materials[1].name = "Two";
+    scene.materials[2].baseColorTexture = {0, 1, turned};
+    for (int material = 0; material < 3; ++material)
+        scene.meshes.push_back({"", {mappedSquare(material)}});
+    for (Mesh& mesh : scene.meshes)
+        mesh.primitives[0].texCoord0 = {{0, 0}, {1, 0}, {1, 3}, {0, 3}};
+    const Scene before = scene;
+    EXPECT_EQ(applyTextureTransforms(scene), std::vector<std::string>{"Two"});
+    EXPECT_EQ(scene.meshes[0].primitives[0].texCoord0,
+              (std::vector<glm::vec2>{{0.5f, 0.25f}, {0.5f, -1.75f}, {6.5f, -1.75f}, {6.5f, 0.25f}}));
+    for (const TextureRef* use : {&scene.materials[0].baseColorTexture, &scene.materials[0].emissionTexture})
+        EXPECT_EQ(use->transform, glm::mat3(1.0f));
+    for (size_t other : {1u, 2u}) {
+        EXPECT_EQ(scene.meshes[other].primitives[0].texCoord0, before.meshes[other].primitives[0].texCoord0);
+        EXPECT_EQ(scene.materials[other].baseColorTexture.transform, turned);
+    }
+}
+
+TEST(EngineFiles, GodotsSkyIsAColourOfItsScreen) {
+    const glm::vec3 sky(4, 8, 16); // shown as 1, .5 and .25, which are .537099 and .735357 in sRGB
+    for (const EngineFile& file : engineFiles(Engine::Godot, {.name = "A", .exposure = -4, .sky = sky})) {
+        if (file.name != "level.tscn") continue;
+        EXPECT_TRUE(contains(file.text, "background_color = Color(0.537099, 0.735357, 1, 1)")) << file.text;
+    }
+}
+
 // Engines add emission to what is seen through glass.
 TEST(EngineScene, PanesShineByTheShareThatTheyDoNotTransmit) {
     for (const auto& [transmission, shown] : {std::pair(0.0f, 1.0f), {0.75f, 0.25f}, {1.0f, 0.08f}}) {
