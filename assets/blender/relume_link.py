@@ -77,6 +77,11 @@ def mean_color(image):
     return found
 
 
+def has_nodes(thing):
+    """Tells whether a material or world is made of nodes: all are from Blender 6.0 on, which does not ask any more."""
+    return getattr(thing, "use_nodes", True)
+
+
 def sky(world, folder):
     """Returns the sky of a world as Relume's extras have it, or None for a dark one.
 
@@ -85,7 +90,7 @@ def sky(world, folder):
     """
     if world is None:
         return None
-    if not world.use_nodes:
+    if not has_nodes(world):
         return {"color": list(world.color), "intensity": LUMENS_PER_WATT} if any(world.color) else None
     background = next((node for node in world.node_tree.nodes if node.type == "BACKGROUND"), None)
     if background is None:
@@ -143,7 +148,7 @@ class Dressed:
             elif light.type == "SUN":
                 light["relume"] = {"angle": light.angle}
         for material in bpy.data.materials:  # the exporter follows the surface, not the lightmap that is shown for it
-            if not material.use_nodes:
+            if not has_nodes(material):
                 continue
             self.brighten(material.node_tree.nodes)
             if "Relume lightmap" in material.node_tree.nodes and "relume_surface" in material:
@@ -229,7 +234,7 @@ def show_lightmap(path):
             without += 1
             continue
         for slot in thing.material_slots:
-            if slot.material and slot.material.use_nodes:
+            if slot.material and has_nodes(slot.material):
                 light_material(slot.material, picture, thing.data.uv_layers[1].name)
     return without
 

@@ -27,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kScript = "relume_link.py";
+
 // Between fork and exec only what is safe there is called.
 [[noreturn]] void becomeBlender(char* const* arguments, pid_t parent, const char* complaints) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -57,18 +59,24 @@ int runBlender(std::vector<std::string> words, const std::string& path, const st
 }
 
 // Returns the Python module that Blender's exporter misses, "" where that is not what it complains about.
-// Debian's Blender comes without numpy, by which it writes glTF files.
+// Debian's Blender comes without numpy, by which it writes glTF files. Its own add-ons may miss others as
+// Blender starts, which the export does without: they are told by a trace without the script and the
+// exporter.
 std::string missingModule(const std::string& complaints) {
     const std::string before = "ModuleNotFoundError: No module named '";
     std::ifstream file(complaints);
+    std::string name;
+    bool ours = true; // what is read is no trace of others
     for (std::string line; std::getline(file, line);) {
-        if (!line.starts_with(before)) continue;
-        const std::string name = line.substr(before.size(), line.rfind('\'') - before.size());
-        const bool plain = std::all_of(name.begin(), name.end(),
-                                       [](unsigned char c) { return std::isalnum(c) || c == '_'; });
-        return plain ? name : "";
+        if (line.starts_with("Traceback")) ours = false;
+        if (line.find(kScript) != std::string::npos || line.find("io_scene_gltf") != std::string::npos)
+            ours = true;
+        if (ours && line.starts_with(before))
+            name = line.substr(before.size(), line.rfind('\'') - before.size());
     }
-    return "";
+    const bool plain =
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_'; });
+    return plain ? name : "";
 }
 
 } // namespace
@@ -85,7 +93,7 @@ std::optional<std::string> findBlender() {
 
 std::vector<uint8_t> exportByBlender(const std::string& blender, const std::string& path) {
     const PassingFolder folder(fs::temp_directory_path(), "relume_blend_");
-    const std::string script = folder.file("relume_link.py"), level = folder.file("level.glb");
+    const std::string script = folder.file(kScript), level = folder.file("level.glb");
     std::ofstream(script, std::ios::binary) << blenderScript();
     const std::string complaints = folder.file("complaints.txt");
     const int status = runBlender({blender, "--background", "--factory-startup", "--disable-autoexec",

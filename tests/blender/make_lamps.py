@@ -12,7 +12,8 @@ def paint(name, strength):
     material.use_nodes = True
     surface = material.node_tree.nodes["Principled BSDF"].inputs
     surface["Base Color"].default_value = (0.6, 0.5, 0.4, 1)
-    surface["Emission"].default_value = (1, 0.5, 0.25, 1)
+    color = "Emission Color" if "Emission Color" in surface else "Emission"  # as Blender names it since 4.0, and before
+    surface[color].default_value = (1, 0.5, 0.25, 1)
     surface["Emission Strength"].default_value = strength
     return material
 

@@ -24,7 +24,8 @@ named("Floor").data.materials.append(paint("Floor", (0.6, 0.6, 0.6)))
 bpy.ops.mesh.primitive_cube_add(size=1, location=(1, 0.5, 0.5))
 glowing = paint("Box", (0.8, 0.2, 0.2))
 glow = glowing.node_tree.nodes["Principled BSDF"].inputs
-glow["Emission"].default_value, glow["Emission Strength"].default_value = (1, 1, 1, 1), 2
+color = "Emission Color" if "Emission Color" in glow else "Emission"  # as Blender names it since 4.0, and before
+glow[color].default_value, glow["Emission Strength"].default_value = (1, 1, 1, 1), 2
 named("Box").data.materials.append(glowing)
 bpy.context.object.data.uv_layers.new(name="Lightmap")
 bpy.ops.object.light_add(type="AREA", location=(0, 0, 3), rotation=(0.3, 0, 0))

@@ -179,6 +179,16 @@ TEST(BlenderExport, TellsWhichModuleOfPythonIsMissing) {
     EXPECT_TRUE(contains(told("Error: File format is not supported"), "room.blend: Blender cannot read it"));
     EXPECT_TRUE(
         contains(told("ModuleNotFoundError: No module named 'a b'"), "room.blend: Blender cannot read it"));
+    // Blender's own add-ons miss some as it starts.
+    const std::string own =
+        "Traceback (most recent call last):\n  File 'bl_pkg/__init__.py', line 1, in register\n"
+        "ModuleNotFoundError: No module named 'cattrs'\n";
+    EXPECT_TRUE(contains(told(own), "Blender cannot read it"));
+    EXPECT_TRUE(contains(told(own +
+                              "Traceback (most recent call last):\n  File 'relume_link.py', line 18\n"
+                              "ModuleNotFoundError: No module named 'numpy'\n" +
+                              own),
+                         "lacks numpy"));
 }
 
 } // namespace

@@ -104,7 +104,7 @@ for lightmap in lightmaps:
 lit = lit_materials(level)
 for material in bpy.data.materials:
     page = page_of(material, lit)
-    if material.use_nodes and page is not None:
+    if page is not None:
         light(material, lightmaps[page])
 scene = bpy.context.scene
 scene.view_settings.exposure = exposure
