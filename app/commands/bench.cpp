@@ -146,7 +146,7 @@ void addBenchCommand(CLI::App& app) {
     addBenchReloadCommand(*bench);
     CLI::App* trace = bench->add_subcommand("trace", "Rays per second of every tracer's real kernels");
     auto options = std::make_shared<BenchOptions>();
-    trace->add_option("scene", options->scene, "glTF scene")->required();
+    trace->add_option("SCENE", options->scene, "glTF scene")->required()->type_name("");
     addChoiceOptions(*trace, options->choice);
     trace->add_option("--sizes", options->sizes, "Lightmap edges")
         ->delimiter(',')

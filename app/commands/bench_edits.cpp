@@ -79,7 +79,7 @@ void addBenchEditsCommand(CLI::App& bench) {
         "edits", "What edits of lights and colours cost in a baked scene, against baking it anew");
     const auto options = std::make_shared<BenchEditsOptions>();
     EditsBenchDesc& b = options->bench;
-    command->add_option("scene", b.scene, "glTF scene")->required();
+    command->add_option("SCENE", b.scene, "glTF scene")->required()->type_name("");
     addChoiceOptions(*command, b.choice);
     command->add_option("--lights", b.lamps, "Numbers of lamps; as many are added as the scene has too few")
         ->delimiter(',')

@@ -85,7 +85,7 @@ void addBenchFramesCommand(CLI::App& bench) {
         "frames", "Frame times while a scene is baked, and what drawing leaves of the bake's speed");
     const auto options = std::make_shared<BenchFramesOptions>();
     FramesBenchDesc& b = options->bench;
-    command->add_option("scene", b.bake.files.scene, "glTF scene")->required();
+    command->add_option("SCENE", b.bake.files.scene, "glTF scene")->required()->type_name("");
     addChoiceOptions(*command, b.bake.files.choice);
     addSizeOption(*command, "--lightmap-size", b.bake);
     addSolverOptions(*command, b.bake);

@@ -155,7 +155,7 @@ void addBenchMethodsCommand(CLI::App& bench) {
         "methods", "Time and error of every method over sizes and settings, as a report");
     auto options = std::make_shared<BenchMethodsOptions>();
     BenchMethodsOptions& o = *options;
-    command->add_option("scene", o.bench.scene, "glTF scene")->required();
+    command->add_option("SCENE", o.bench.scene, "glTF scene")->required()->type_name("");
     addChoiceOptions(*command, o.bench.choice);
     command->add_option("--html", o.html, "Report to write: one page with plots and pictures")->required();
     command->add_option("--json", o.json, "Write the figures to this file, - for standard output");

@@ -97,7 +97,7 @@ void addBenchQualityCommand(CLI::App& bench) {
         "quality", "How clean a bake is over time and rays, against a long one: also where it is dark");
     const auto options = std::make_shared<BenchQualityOptions>();
     QualityBenchDesc& b = options->bench;
-    command->add_option("scene", b.scene, "glTF scene")->required();
+    command->add_option("SCENE", b.scene, "glTF scene")->required()->type_name("");
     addChoiceOptions(*command, b.choice);
     command->add_option("--size", b.size, "Lightmap edge in texels")
         ->capture_default_str()

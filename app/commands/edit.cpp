@@ -126,9 +126,9 @@ void addEditCommand(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("edit", "Edit lights, materials, the sky and where objects are; all else in the "
                                    "file stays as it is");
-    command->add_option("scene", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+    command->add_option("SCENE", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
         ->required()
-        ->type_name("SCENE");
+        ->type_name("");
     addChoiceOptions(*command, options->bake.files.choice);
     command
         ->add_option("-o,--output", options->output,

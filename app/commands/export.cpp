@@ -109,10 +109,10 @@ void addExportCommand(CLI::App& app) {
         "Write a scene with its lightmap as a game engine reads it: GLB, KTX2, loader; or as a web page");
     const auto o = std::make_shared<ExportCommand>();
     command
-        ->add_option("scene", o->bake.files.scene,
+        ->add_option("SCENE", o->bake.files.scene,
                      "Scene: .glb, .gltf, .obj, .fbx, .dae, ...; with --web also its layers: .exr")
         ->required()
-        ->type_name("SCENE");
+        ->type_name("");
     addChoiceOptions(*command, o->bake.files.choice);
     addExportOptions(*command, o->out);
     CLI::Option* lightmap = command

@@ -234,9 +234,9 @@ void runInfo(const InfoOptions& options) {
 void addInfoCommand(CLI::App& app) {
     const auto options = std::make_shared<InfoOptions>();
     CLI::App* command = app.add_subcommand("info", "Tell what is in a scene and how its lightmap UVs are");
-    command->add_option("scene", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+    command->add_option("SCENE", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
         ->required()
-        ->type_name("SCENE");
+        ->type_name("");
     addChoiceOptions(*command, options->choice);
     command->add_option("--size", options->size, "Lightmap edge [texels]")
         ->capture_default_str()

@@ -95,9 +95,9 @@ void addUnwrapCommand(CLI::App& app) {
     const auto options = std::make_shared<UnwrapOptions>();
     CLI::App* command =
         app.add_subcommand("unwrap", "Make lightmap UVs (TEXCOORD_1) for meshes that have none");
-    command->add_option("scene", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+    command->add_option("SCENE", options->scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
         ->required()
-        ->type_name("SCENE");
+        ->type_name("");
     addChoiceOptions(*command, options->choice);
     command->add_option("-o,--output", options->output, "The scene with its new UVs (.glb)")
         ->required()

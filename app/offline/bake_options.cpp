@@ -250,7 +250,9 @@ CLI::Option* addLayerMemory(CLI::App& command, BakeOptions& o) {
 }
 
 void addBakeOptions(CLI::App& command, BakeOptions& o) {
-    command.add_option("scene", o.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")->required();
+    command.add_option("SCENE", o.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+        ->required()
+        ->type_name("");
     addChoiceOptions(command, o.files.choice);
     command.add_option("-o,--output", o.files.output, "Lightmap to write, .exr or .png")->required();
     command.add_option("--picture", o.files.picture, "Write the lightmap to this .png as well");

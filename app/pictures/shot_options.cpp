@@ -92,7 +92,9 @@ void addPictureOptions(CLI::App& command, ShotOptions& o) {
 }
 
 void addShotOptions(CLI::App& command, ShotOptions& o) {
-    command.add_option("scene", o.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")->required();
+    command.add_option("SCENE", o.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+        ->required()
+        ->type_name("");
     addChoiceOptions(command, o.bake.files.choice);
     command
         .add_option("-o,--output", o.bake.files.output,

@@ -37,8 +37,9 @@ std::vector<uint32_t> parseCounts(const std::string& text) {
 } // namespace
 
 void addTimelapseOptions(CLI::App& command, TimelapseOptions& o) {
-    command.add_option("scene", o.shot.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
-        ->required();
+    command.add_option("SCENE", o.shot.bake.files.scene, "Scene: .glb, .gltf, .obj, .fbx, .dae, ...")
+        ->required()
+        ->type_name("");
     addChoiceOptions(command, o.shot.bake.files.choice);
     command
         .add_option(

@@ -9,6 +9,9 @@
 #include <limits>
 #include <utility>
 
+#include <assimp/config.h>
+#include <assimp/version.h>
+
 namespace relume::foreign {
 namespace {
 
@@ -36,8 +39,17 @@ double numberOf(const aiMetadata& data, const char* key, double fallback) {
     return data.Get(key, whole) ? whole : fallback;
 }
 
-/// The rows that bring an axis of the file with its sign to X, Y and Z; libassimp leaves .fbx files as they
-/// are.
+/// Tells whether libassimp has turned a .fbx file by the axes that it tells. Releases from 5.4.0 on do; since
+/// 6.0 there is a switch, which is off here.
+bool libraryTurnsFbx() {
+#ifdef AI_CONFIG_IMPORT_FBX_IGNORE_UP_AXIS_DIRECTION
+    return false;
+#else
+    return std::pair(aiGetVersionMajor(), aiGetVersionMinor()) >= std::pair(5u, 4u);
+#endif
+}
+
+/// The rows that bring an axis of the file with its sign to X, Y and Z.
 glm::dmat3 fbxAxes(const aiMetadata& data) {
     const std::array<std::pair<const char*, const char*>, 3> names = {
         {{"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}}};
@@ -157,7 +169,7 @@ glm::dmat4 toMetres(const Build& build) {
         const aiMetadata& data = *build.source->mMetaData;
         const double unit = numberOf(data, "UnitScaleFactor", 1.0);
         if (std::isfinite(unit) && unit > 0.0) scale *= unit * kCentimetre;
-        axes = axes * fbxAxes(data);
+        if (!libraryTurnsFbx()) axes = axes * fbxAxes(data);
     }
     return glm::dmat4(axes * scale);
 }

@@ -78,7 +78,7 @@ void warnUnsupported(Build& build, const Reader& reader) {
 } // namespace
 
 std::string nameOf(const aiString& name) {
-    const std::string text(name.data, std::min<size_t>(name.length, MAXLEN - 1));
+    const std::string text(name.data, std::min<size_t>(name.length, sizeof(name.data) - 1));
     if (isUtf8(text)) return text;
     std::string utf8;
     for (const char c : text) {

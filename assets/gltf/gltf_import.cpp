@@ -16,7 +16,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <utility>
 
 namespace relume {
 
@@ -169,6 +171,32 @@ bool readAll(std::vector<unsigned char>* out, std::string* error, const std::str
     return true;
 }
 
+bool writesNothing(std::string* error, const std::string&, const std::vector<unsigned char>&, void*) {
+    *error = "nothing is written here";
+    return false;
+}
+
+/// Has the parser read files by the functions above. Since version 2.9 it asks for the size of each, too,
+/// takes functions only if all are there, and bounds a file's size if it is not told otherwise.
+template<typename Parser, typename Callbacks>
+void readBy(Parser& parser, Callbacks callbacks, BufferFiles& files) {
+    callbacks.FileExists = isFile;
+    callbacks.ExpandFilePath = sameName;
+    callbacks.ReadWholeFile = readAll;
+    callbacks.WriteWholeFile = writesNothing;
+    callbacks.user_data = &files;
+    if constexpr (requires { callbacks.GetFileSizeInBytes; })
+        callbacks.GetFileSizeInBytes = [](size_t* size, std::string* error, const std::string& path, void*) {
+            std::error_code code;
+            *size = static_cast<size_t>(std::filesystem::file_size(path, code));
+            if (code) *error = code.message();
+            return !code;
+        };
+    if constexpr (requires { parser.SetMaxExternalFileSize(size_t{}); })
+        parser.SetMaxExternalFileSize(std::numeric_limits<size_t>::max());
+    parser.SetFsCallbacks(std::move(callbacks));
+}
+
 void warnPadded(Build& build, const std::string& what) {
     build.warnings.add(what, "ends a few bytes too early, which are taken as padding: export it again");
 }
@@ -198,7 +226,7 @@ void parse(File file, Build& build) {
     file.bytes = {};
 
     tinygltf::TinyGLTF parser;
-    parser.SetFsCallbacks({isFile, sameName, readAll, nullptr, &files});
+    readBy(parser, tinygltf::FsCallbacks{}, files);
     const std::string folder = std::filesystem::path(file.path).parent_path().string();
     const unsigned int size = static_cast<unsigned int>(bytes.size());
     std::string error, warning;

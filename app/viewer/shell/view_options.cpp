@@ -50,8 +50,10 @@ DisplayMode displayModeOf(const std::string& display) {
 }
 
 void addViewOptions(CLI::App& command, ViewOptions& o) {
-    command.add_option("scene", o.bake.files.scene,
-                       "Scene: .glb, .gltf, .obj, .fbx, .dae, ... (default: none yet)");
+    command
+        .add_option("SCENE", o.bake.files.scene,
+                    "Scene: .glb, .gltf, .obj, .fbx, .dae, ... (default: none yet)")
+        ->type_name("");
     addChoiceOptions(command, o.bake.files.choice);
     addSizeOption(command, "--size", o.bake);
     command.get_option("--size")->description(

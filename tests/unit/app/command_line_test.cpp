@@ -82,7 +82,7 @@ TEST_F(CommandLine, WhatTheParserTellsIsOneLine) {
     EXPECT_EQ(told({"bench", "frames", "r.glb", "--display", "x"}),
               "error: --display: 'x' is not allowed: choose auto, shared or copied\n");
     EXPECT_EQ(told({"bench", "frames"}),
-              "error: scene is required: 'relume bench frames --help' shows what there is\n");
+              "error: SCENE is required: 'relume bench frames --help' shows what there is\n");
     EXPECT_EQ(told({}), "error: A subcommand is required: 'relume --help' shows what there is\n");
 }
 

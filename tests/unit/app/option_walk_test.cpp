@@ -70,7 +70,7 @@ const std::map<std::string, WalkWords> kWith = {
 /// These options take a text of any kind: names, and files that may be called so. What they mean by it
 /// decides whether it is a mistake.
 const OptionNames kTexts = {
-    "--scene",    "--variant", "in",           "scene",       "name",          "a",        "b",
+    "--scene",    "--variant", "in",           "SCENE",       "name",          "a",        "b",
     "layers",     "--output",  "--picture",    "--json",      "--html",        "--plot",   "--diff",
     "--mask",     "--dark-by", "--error-map",  "--scene-out", "--camera",      "--device", "--bake-device",
     "--resume",   "--bake",    "--checkpoint", "--lightmap",  "--write-scene", "--set",    "--move",
