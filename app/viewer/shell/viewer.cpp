@@ -372,6 +372,7 @@ void Viewer::frame(const Redraw& redraw) {
     if (drew) shots_.pictureDrawn();
     const double drawnScene = feedback_.now();
     gui_.end();
+    if (gui_.hasInputLeft()) feedback_.pacer().input();
     shots_.takeFrame(begin, window_.size());
     const double beforeSwap = feedback_.now();
     window_.swap();

@@ -13,6 +13,7 @@
 #include <imgui.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <imgui_internal.h>
 
 namespace relume {
 namespace {
@@ -148,8 +149,13 @@ void Gui::feed(const WindowEvent& event) {
     case WindowEvent::Kind::Enter:
         ImGui_ImplGlfw_CursorEnterCallback(window, event.pressed ? GLFW_TRUE : GLFW_FALSE);
         break;
+#if IMGUI_VERSION_NUM >= 18700 // earlier ones ask for the cursor's place themselves
+    case WindowEvent::Kind::Cursor:
+        ImGui_ImplGlfw_CursorPosCallback(window, event.at.x, event.at.y);
+        break;
+#endif
     default:
-        break; // ImGui asks for the cursor's place itself
+        break;
     }
 }
 
@@ -210,6 +216,14 @@ bool Gui::wantsKeyboard() const {
 
 ImFont* Gui::titleFont() {
     return ImGui::GetIO().Fonts->Fonts.back();
+}
+
+bool Gui::hasInputLeft() const {
+#if IMGUI_VERSION_NUM >= 18700
+    return !ImGui::GetCurrentContext()->InputEventsQueue.empty();
+#else
+    return false;
+#endif
 }
 
 bool Gui::animates() const {

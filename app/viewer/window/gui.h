@@ -32,6 +32,9 @@ public:
 
     bool wantsMouse() const;    // the cursor is over a panel, or drags something of one
     bool wantsKeyboard() const; // something is typed
+    /// Tells whether input waits for the next frame: Dear ImGui 1.87 on takes what happens to one button or
+    /// key in one frame each.
+    bool hasInputLeft() const;
     /// Tells whether something blinks or is dragged.
     bool animates() const;
     /// Returns the font of headings, which is larger. It is valid within a frame.
