@@ -1,11 +1,22 @@
 #include "app/viewer/panels/tab_order.h"
 
 #include <imgui.h>
+#include <imgui_internal.h>
 
 namespace relume::ui {
 namespace {
 
 TabOrder* innermostOrder = nullptr;
+
+// Shows which control has the keyboard's focus. Dear ImGui 1.87 on no longer does so by itself, and presses
+// none that is not shown to have it.
+void showFocus() {
+#if IMGUI_VERSION_NUM >= 19140
+    ImGui::SetNavCursorVisible(true);
+#else
+    ImGui::GetCurrentContext()->NavDisableHighlight = false;
+#endif
+}
 
 } // namespace
 
@@ -40,6 +51,7 @@ void TabOrder::add() {
     if (ImGui::IsItemFocused() && ImGui::GetIO().NavVisible) focused_ = drawn_;
     if (drawn_ == wanted_) {
         ImGui::SetKeyboardFocusHere(-1); // on the control before, which is the last one
+        showFocus();
         focused_ = drawn_;
     }
     ++drawn_;

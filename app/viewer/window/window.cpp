@@ -62,6 +62,10 @@ int letterOf(int key, int scancode) {
 } // namespace
 
 Window::Window(const Desc& desc) {
+#ifdef GLFW_PLATFORM // since 3.4 it would open Wayland's windows, which have no frame on all desktops
+    const auto isSet = [](const char* name) { return std::getenv(name) != nullptr; };
+    if (isSet("DISPLAY") || !isSet("WAYLAND_DISPLAY")) glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
     if (glfwInit() != GLFW_TRUE) failWithoutDisplay();
     alive = true;
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 4);
