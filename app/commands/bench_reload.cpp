@@ -89,11 +89,7 @@ void addBenchReloadCommand(CLI::App& bench) {
         "reload", "What it costs when another program writes the scene's file, against edits in the viewer");
     const auto options = std::make_shared<BenchReloadOptions>();
     ReloadBenchDesc& b = options->bench;
-    command
-        ->add_option("SCENE", b.scene,
-                     "glTF scene->type_name("
-                     "); a copy of it is edited")
-        ->required();
+    command->add_option("SCENE", b.scene, "glTF scene; a copy of it is edited")->required()->type_name("");
     addChoiceOptions(*command, b.choice);
     command->add_option("--lights", b.lamps, "How many lamps light the scene, alone")
         ->capture_default_str()

@@ -96,6 +96,16 @@ bool showsTransmission(Engine engine) {
     return engine != Engine::Godot && engine != Engine::PlayCanvas;
 }
 
+// Turns UVs as textures are turned: Godot knows no rotation, and one transform for all textures of a
+// material.
+void giveGodotItsUvs(Scene& scene, const std::string& path) {
+    for (const std::string& name : applyTextureTransforms(scene))
+        spdlog::warn(
+            "{}: material {} has textures of several texture transforms, of which godot reads one: give "
+            "them the same",
+            path, inQuotes(name));
+}
+
 Camera startCamera(const WorldMesh& mesh) {
     const ViewCamera view = goodView(mesh, kUsualAspect);
     Camera camera;
@@ -232,13 +242,7 @@ ExportResult exportLevel(const ExportDesc& desc, const vk::Device& device, const
     result.exposure = desc.exposure.value_or(exposureOf(light));
     EngineScene level = engineScene(scene, atlas, meanLight(lightmap, light));
     if (!showsTransmission(desc.engine)) blendWhatTransmits(level.scene);
-    if (desc.engine ==
-        Engine::Godot) // it knows no rotation, and one transform for all textures of a material
-        for (const std::string& name : applyTextureTransforms(level.scene))
-            spdlog::warn(
-                "{}: material {} has textures of several texture transforms, of which godot reads one: "
-                "give them the same",
-                scene.path, inQuotes(name));
+    if (desc.engine == Engine::Godot) giveGodotItsUvs(level.scene, scene.path);
     const std::vector<FloatImage> pages = pagesOf(lightmap);
     if (level.scene.cameras.empty()) level.scene.cameras.push_back(startCamera(source.mesh));
     if (!readsThirdSet(desc.engine))
