@@ -34,7 +34,7 @@ uint64_t vec4s(uint64_t count) {
 
 // Counts of light and errors, and sums per chunk.
 uint64_t localBytes(uint64_t chunks) {
-    return (shader::kLightBins + shader::kErrorBins) * sizeof(uint32_t) + chunks * sizeof(shader::LocalSums);
+    return kLocalSumsAt + chunks * sizeof(shader::LocalSums);
 }
 
 } // namespace

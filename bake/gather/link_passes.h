@@ -19,6 +19,9 @@ uint32_t linksOfSamplePass(uint32_t patches, uint32_t samples, bool software);
 
 /// Returns how many of so many chunks a batch of links has at most.
 uint32_t linkBatchChunks(uint32_t chunks, bool software);
+/// LinkBuffers::local holds copies of bins of light and of errors, and from here on a LocalSums per chunk
+/// [bytes].
+constexpr uint64_t kLocalSumsAt = shader::kBinCopies * shader::kBinsOfCopy * sizeof(uint32_t);
 
 /// The buffers of the link methods. "Sums" hold each replicate's samples by themselves:
 /// vec4[kReplicates][patches].
@@ -33,7 +36,7 @@ struct LinkBuffers {
     vk::Buffer rows, result;  // of smoothing, and its outcome
     vk::Buffer chunkSums;     // per chunk, read back
     vk::Buffer sums;          // or over all of them
-    vk::Buffer local;         // of local error, read back: LocalCounts
+    vk::Buffer local;         // of local error, read back: bins, LocalSums
     vk::Buffer scales;        // vec2 per chunk, where chunks have sample passes of their own
     vk::Buffer rays;          // uint[kRayCounters]
     uint32_t batchChunks = 0; // at most in one submit

@@ -58,8 +58,8 @@ void LinkErrors::resolveOnHost(const LinkState& state, double sigma) const {
     const LinkBuffers& buffers = kit_.buffers;
     const auto scale = [](float samples) { return samples > 0.0f ? 1.0f / samples : 0.0f; };
     const auto links = static_cast<float>(state.linkSamplePasses * kit_.linksOfSamplePass);
-    auto* bins = buffers.local.as<uint32_t>();
-    uint32_t* const errorBins = bins + shader::kLightBins;
+    auto* const local = buffers.local.as<std::byte>();
+    auto* const bins = reinterpret_cast<uint32_t*>(local); // of the first copy
     HostSmoothing smoothing = kit_.smoothing(sigma, bool(buffers.rows));
     if (state.hasScales()) smoothing.scales = buffers.scales.as<glm::vec2>();
     smoothing.rowChunks = kit_.rankChunks.rowMarks();
@@ -74,15 +74,18 @@ void LinkErrors::resolveOnHost(const LinkState& state, double sigma) const {
                   .directScale = scale(static_cast<float>(state.directSamplePasses)),
                   .floor = static_cast<float>(kLocalFloor * state.median),
                   .sums = buffers.chunkSums.as<shader::ResolveSums>(),
-                  .local = reinterpret_cast<shader::LocalSums*>(errorBins + shader::kErrorBins),
+                  .local = reinterpret_cast<shader::LocalSums*>(local + kLocalSumsAt),
                   .lightBins = bins,
-                  .errorBins = errorBins});
+                  .errorBins = bins + shader::kLightBins});
 }
 
 LinkErrors::Local LinkErrors::local() const {
-    const auto own = vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.local,
-                                              shader::kLightBins + shader::kErrorBins);
-    std::vector<uint64_t> counts(own.begin(), own.end());
+    const size_t copies = kit_.gatherPass.onCpu() ? 1 : shader::kBinCopies;
+    const auto own =
+        vk::readBuffer<uint32_t>(kit_.input.device, kit_.buffers.local, copies * shader::kBinsOfCopy);
+    std::vector<uint64_t> counts(shader::kBinsOfCopy, 0);
+    for (size_t i = 0; i < own.size(); ++i)
+        counts[i % shader::kBinsOfCopy] += own[i];
     kit_.input.ranks.sum(counts);
     const std::vector<uint32_t> bins(counts.begin(), counts.end());
     const std::span<const uint32_t> all = bins;
@@ -109,7 +112,7 @@ LinkErrors::Local LinkErrors::local() const {
 std::vector<shader::LocalSums> LinkErrors::localSums() const {
     std::vector<shader::LocalSums> sums(kit_.chunkCount());
     vk::download(kit_.input.device, kit_.buffers.local, sums.data(), sums.size() * sizeof(shader::LocalSums),
-                 (shader::kLightBins + shader::kErrorBins) * sizeof(uint32_t));
+                 kLocalSumsAt);
     kit_.rankChunks.share(sums);
     return sums;
 }

@@ -10,8 +10,7 @@ layout(push_constant, scalar) uniform Push { SmoothPush push; };
 #include "lib/local_error.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer SumsList { ResolveSums items[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LocalErrors {
-    uint lights[kLightBins];
-    uint errors[kErrorBins];
+    uint bins[kBinCopies * kBinsOfCopy]; // of light, then of errors
     LocalSums items[];
 };
 
@@ -30,14 +29,15 @@ vec3 contrasts(vec3 v[kReplicates]) {
 }
 
 // Notes the light of a texel that is shown, and how far it is off.
-LocalSums localTerm(vec3 light, vec3 direct[kReplicates], vec3 smoothed[kReplicates], vec3 moved[kReplicates]) {
+LocalSums localTerm(uint chunk, vec3 light, vec3 direct[kReplicates], vec3 smoothed[kReplicates], vec3 moved[kReplicates]) {
     LocalErrors local = LocalErrors(push.local);
     float own = channelMean(light), relativeTo = max(max(own, push.floor), 1e-30);
-    atomicAdd(local.lights[binOf(own, kLeastLightOctave, kLightBinsPerOctave, kLightBins)], 1u);
+    uint lights = chunk % kBinCopies * kBinsOfCopy, errors = lights + kLightBins;
+    atomicAdd(local.bins[lights + binOf(own, kLeastLightOctave, kLightBinsPerOctave, kLightBins)], 1u);
     vec3 directOff = contrasts(direct), off = contrasts(smoothed), moves = contrasts(moved);
     for (uint k = 0u; k < 3u; ++k) {
         float error = abs(directOff[k] + off[k]) / relativeTo;
-        atomicAdd(local.errors[binOf(error, kLeastErrorOctave, kErrorBinsPerOctave, kErrorBins)], 1u);
+        atomicAdd(local.bins[errors + binOf(error, kLeastErrorOctave, kErrorBinsPerOctave, kErrorBins)], 1u);
     }
     float move = 0.25 * channelMean(moved[0] + moved[1] + moved[2] + moved[3]);
     // Replicates know nothing of each other, so the mean of this product is what they have in common.
@@ -93,7 +93,7 @@ void main() {
         term.count = 1.0;
     }
     if (push.local != 0ul)
-        localTerms[lane] = patchIsShown(flags) ? localTerm(light, direct, smoothed, moved) : LocalSums(0.0, 0.0, 0.0, 0.0);
+        localTerms[lane] = patchIsShown(flags) ? localTerm(chunk, light, direct, smoothed, moved) : LocalSums(0.0, 0.0, 0.0, 0.0);
     VEC4_AT(push.result, index) = vec4(light, sqrt((directVariance + indirectVariance) / 3.0));
     terms[lane] = term;
     barrier();

@@ -1,6 +1,9 @@
 // Counts light and local errors of texels by their size, in bins of equal ratios. The file is compiled as C++, too
 // (bake/base/local_error.h), which makes percentiles of the counts.
 const uint kLightBins = 1280u, kErrorBins = 448u;
+// A GPU counts a chunk in one of so many copies of both, which are added up later: all texels of a bright wall have one
+// bin, and would wait for each other.
+const uint kBinCopies = 64u, kBinsOfCopy = kLightBins + kErrorBins;
 const float kLightBinsPerOctave = 16.0, kErrorBinsPerOctave = 16.0;
 const float kLeastLightOctave = -40.0, kLeastErrorOctave = -24.0; // below is the first bin
 
