@@ -12,20 +12,53 @@
 namespace relume {
 namespace {
 
-// Slices are the same however many threads there are, so that sums round alike.
-constexpr size_t kSlice = 4096;
-
-struct Slice {
-    double light = 0, square = 0, count = 0;
-    std::array<uint32_t, shader::kLightBins> lights{};
-};
-struct Deviations {
-    std::array<uint32_t, shader::kErrorBins> bins{};
-};
-
 float meanOf(const glm::vec4& light) {
     return (light.r + light.g + light.b) / 3.0f;
 }
+
+// Sums over texels that are shown, and counts of them by their light.
+struct Shown {
+    double count = 0, light = 0, square = 0; // square: of w
+    std::vector<uint32_t> lights;            // [kLightBins]
+};
+
+// The scale turns a patch's w into how far it is off relative to its light.
+struct LocalScale {
+    double deviation = 0; // 0: nothing is off
+    float least = 1e-30f; // light that is as good as none [cd/m^2]
+
+    double of(const glm::vec4& light) const { return deviation * light.w / std::max(meanOf(light), least); }
+};
+
+// Counts of texels by how far they are off, and sums over them for each chunk.
+struct Deviations {
+    std::vector<double> bins;         // [kErrorBins]
+    std::vector<ChunkSquares> chunks; // without the bias
+    std::vector<double> inverse;      // of squares of what light is relative to, per chunk
+};
+
+LayerPass::LocalWork workOf(const vk::Buffer& composite, const LocalScale& scale) {
+    return {composite, static_cast<float>(scale.deviation), scale.least};
+}
+
+LocalScale scaleOf(const Shown& all, double error) {
+    if (!(all.light > 0) || !(all.square > 0)) return {};
+    return {.deviation = error * (all.light / all.count) / std::sqrt(all.square / all.count),
+            .least = static_cast<float>(std::max(kLocalFloor * medianLight(all.lights), 1e-30))};
+}
+
+// Takes the bias of smoothing along, where there is any.
+LocalError localErrorOf(WorkerPool& pool, Deviations off, std::span<const double> bias) {
+    const LocalError noise = normalErrorOf(off.bins);
+    if (bias.empty()) return noise;
+    for (size_t c = 0; c < off.chunks.size(); ++c)
+        if (off.chunks[c].texels > 0) off.chunks[c].bias = bias[c] * off.inverse[c] / off.chunks[c].texels;
+    return withBias(pool, noise, off.chunks);
+}
+
+// Slices are the same however many threads there are, so that sums round alike.
+constexpr size_t kSlice = 4096;
+static_assert(kSlice % shader::kChunk == 0);
 
 // Calls function(patch index, slice) for each patch that is shown.
 template<typename Part, typename Function>
@@ -39,20 +72,11 @@ std::vector<Part> overSlices(WorkerPool& pool, std::span<const shader::Patch> pa
     return parts;
 }
 
-} // namespace
-
-namespace {
-
-// The scale turns a patch's w into how far it is off relative to its light.
-struct LocalScale {
-    double deviation = 0; // 0: nothing is off
-    float least = 1e-30f; // light that is as good as none [cd/m^2]
-
-    double of(const glm::vec4& light) const { return deviation * light.w / std::max(meanOf(light), least); }
-};
-
-LocalScale scaleOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span<const shader::Patch> patches,
-                   double error) {
+Shown shownOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span<const shader::Patch> patches) {
+    struct Slice {
+        double light = 0, square = 0, count = 0;
+        std::array<uint32_t, shader::kLightBins> lights{};
+    };
     const std::vector<Slice> slices = overSlices<Slice>(pool, patches, [&](size_t i, Slice& slice) {
         const float own = meanOf(light[i]);
         slice.light += own;
@@ -61,7 +85,7 @@ LocalScale scaleOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span
         ++slice.lights[shader::binOf(own, shader::kLeastLightOctave, shader::kLightBinsPerOctave,
                                      shader::kLightBins)];
     });
-    Slice all;
+    Shown all{.lights = std::vector<uint32_t>(shader::kLightBins, 0)};
     for (const Slice& slice : slices) {
         all.light += slice.light;
         all.square += slice.square;
@@ -69,52 +93,110 @@ LocalScale scaleOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span
         for (size_t bin = 0; bin < all.lights.size(); ++bin)
             all.lights[bin] += slice.lights[bin];
     }
-    if (!(all.light > 0) || !(all.square > 0)) return {};
-    return {.deviation = error * (all.light / all.count) / std::sqrt(all.square / all.count),
-            .least = static_cast<float>(std::max(kLocalFloor * medianLight(all.lights), 1e-30))};
+    return all;
 }
 
-LocalError noiseOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span<const shader::Patch> patches,
-                   const LocalScale& scale) {
-    if (!(scale.deviation > 0)) return {0, 0, 0, 0};
-    const std::vector<Deviations> parts =
-        overSlices<Deviations>(pool, patches, [&](size_t i, Deviations& part) {
-            ++part.bins[shader::binOf(static_cast<float>(scale.of(light[i])), shader::kLeastErrorOctave,
-                                      shader::kErrorBinsPerOctave, shader::kErrorBins)];
-        });
-    std::vector<double> deviations(shader::kErrorBins);
-    for (const Deviations& part : parts)
-        for (size_t bin = 0; bin < deviations.size(); ++bin)
-            deviations[bin] += part.bins[bin];
-    return normalErrorOf(deviations);
+Deviations deviationsOf(WorkerPool& pool, std::span<const glm::vec4> light,
+                        std::span<const shader::Patch> patches, const LocalScale& scale) {
+    const size_t chunks = (patches.size() + shader::kChunk - 1) / shader::kChunk;
+    Deviations all{std::vector<double>(shader::kErrorBins, 0.0), std::vector<ChunkSquares>(chunks),
+                   std::vector<double>(chunks, 0.0)};
+    struct Bins {
+        std::array<uint32_t, shader::kErrorBins> bins{};
+    };
+    const std::vector<Bins> parts = overSlices<Bins>(pool, patches, [&](size_t i, Bins& part) {
+        const double off = scale.of(light[i]), own = std::max(meanOf(light[i]), scale.least);
+        ++part.bins[shader::binOf(static_cast<float>(off), shader::kLeastErrorOctave,
+                                  shader::kErrorBinsPerOctave, shader::kErrorBins)];
+        ChunkSquares& chunk = all.chunks[i / shader::kChunk]; // of one slice alone
+        chunk.texels += 1;
+        chunk.noise += off * off;
+        all.inverse[i / shader::kChunk] += 1.0 / (own * own);
+    });
+    for (const Bins& part : parts)
+        for (size_t bin = 0; bin < all.bins.size(); ++bin)
+            all.bins[bin] += part.bins[bin];
+    return all;
 }
 
 } // namespace
 
 LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, double error) {
-    return noiseOf(pool, light, patches, scaleOf(pool, light, patches, error));
+                        std::span<const shader::Patch> patches, double error, std::span<const double> bias) {
+    const LocalScale scale = scaleOf(shownOf(pool, light, patches), error);
+    return localErrorOf(pool, deviationsOf(pool, light, patches, scale), bias);
 }
 
-LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, double error, std::span<const double> bias) {
-    const LocalScale scale = scaleOf(pool, light, patches, error);
-    std::vector<ChunkSquares> chunks(bias.size());
-    runPortions(pool, chunks.size(), kSlice / shader::kChunk, [&](size_t begin, size_t end) {
-        for (size_t c = begin; c < end; ++c) {
-            double inverse = 0; // sum of squares of what light is relative to, inverted
-            for (size_t i = c * shader::kChunk; i < (c + 1) * shader::kChunk; ++i) {
-                if (!shader::patchIsShown(patches[i].flags)) continue;
-                const double off = scale.of(light[i]), own = std::max(meanOf(light[i]), scale.least);
-                chunks[c].texels += 1;
-                chunks[c].noise += off * off;
-                inverse += 1.0 / (own * own);
-            }
-            if (chunks[c].texels > 0) chunks[c].bias = bias[c] * inverse / chunks[c].texels;
+namespace {
+
+// Has the device count a composite that is there.
+class DeviceCounts {
+public:
+    DeviceCounts(LinkKit& kit, const LayerPass& pass, const vk::Buffer& composite)
+        : kit_(kit), pass_(pass), composite_(composite),
+          bins_(kit.input.device,
+                {.size = uint64_t{kBins} * sizeof(uint32_t), .name = "counts of the composite's texels"}) {}
+
+    Shown shown(const ChunkSumPass& chunkSums) const {
+        const vk::Buffer sums(kit_.input.device, {.size = sizeof(glm::vec4),
+                                                  .memory = vk::Memory::Host,
+                                                  .name = "sums of the composite's texels"});
+        count({}, [&](VkCommandBuffer cmd) {
+            vk::barrier(cmd);
+            chunkSums.record(cmd, {.values = kit_.buffers.chunkSums.address(),
+                                   .sums = sums.address(),
+                                   .chunkCount = kit_.chunkCount(),
+                                   .width = 4});
+        });
+        const glm::vec4 sum = *sums.as<glm::vec4>();
+        return {.count = sum.x, .light = sum.y, .square = sum.z, .lights = binsFrom(0, shader::kLightBins)};
+    }
+
+    // Sums of each chunk are told where they are wanted.
+    Deviations deviations(const LocalScale& scale, bool byChunk) const {
+        constexpr double kNothing = 1e-30; // is counted as not off
+        count({.deviation = std::max(scale.deviation, kNothing), .least = scale.least},
+              [](VkCommandBuffer) {});
+        const std::vector<uint32_t> counts = binsFrom(shader::kLightBins, shader::kErrorBins);
+        Deviations all{.bins = {counts.begin(), counts.end()}};
+        if (!byChunk) return all;
+        const auto sums =
+            vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.chunkSums, kit_.chunkCount());
+        for (const glm::vec4& sum : sums) {
+            all.chunks.push_back({.texels = sum.x, .noise = sum.y});
+            all.inverse.push_back(sum.z);
         }
-    });
-    return withBias(pool, noiseOf(pool, light, patches, scale), chunks);
-}
+        return all;
+    }
+
+private:
+    static constexpr uint32_t kBins = shader::kBinCopies * shader::kBinsOfCopy;
+
+    template<typename Record>
+    void count(const LocalScale& scale, const Record& recordMore) const {
+        VkCommandBuffer cmd = kit_.commands.begin();
+        pass_.recordLocal(cmd, kit_.input.light, workOf(composite_, scale), bins_, kit_.buffers.chunkSums);
+        recordMore(cmd);
+        kit_.run(cmd);
+    }
+
+    // Returns the sums over all copies of these bins.
+    std::vector<uint32_t> binsFrom(uint32_t first, uint32_t count) const {
+        const auto all = vk::readBuffer<uint32_t>(kit_.input.device, bins_, kBins);
+        std::vector<uint32_t> bins(count, 0);
+        for (uint32_t copy = 0; copy < shader::kBinCopies; ++copy)
+            for (uint32_t i = 0; i < count; ++i)
+                bins[i] += all[copy * shader::kBinsOfCopy + first + i];
+        return bins;
+    }
+
+    LinkKit& kit_;
+    const LayerPass& pass_;
+    const vk::Buffer& composite_;
+    vk::Buffer bins_;
+};
+
+} // namespace
 
 namespace {
 
@@ -164,25 +246,28 @@ void CompositeReport::measure(const Layers& layers) {
                           composite.bias * composite.bias;
     const std::vector<double> bias = biasOf(shining, composite.alike);
     WorkerPool& pool = kit_.input.device.workers();
-    const std::vector<glm::vec4>& light = mixer_.light(layers);
-    const std::vector<shader::Patch>& patches = kit_.input.patches.scene.patches;
     const double error = std::sqrt(std::max(0.0, square));
-    local_ = bias.empty() ? localErrorOf(pool, light, patches, error)
-                          : localErrorOf(pool, light, patches, error, bias);
+    LocalScale scale;
+    if (kit_.gatherPass.onCpu()) {
+        const std::vector<glm::vec4>& light = mixer_.light(layers);
+        const std::vector<shader::Patch>& patches = kit_.input.patches.scene.patches;
+        scale = scaleOf(shownOf(pool, light, patches), error);
+        local_ = localErrorOf(pool, deviationsOf(pool, light, patches, scale), bias);
+    } else {
+        const DeviceCounts counts(kit_, pass_, mixer_.mixed(layers));
+        scale = scaleOf(counts.shown(chunkSums_), error);
+        local_ = localErrorOf(pool, counts.deviations(scale, !bias.empty()), bias);
+    }
     const double asked = kit_.settings.localError;
-    if (asked > 0 && local_->p95 > asked) worths_ = worthsOf(layers, error);
+    if (asked > 0 && local_->p95 > asked) worths_ = worthsOf(layers, workOf(mixer_.composite(), scale));
 }
 
 // Asks the device what the variances of each layer are worth where they are. The mixer has mixed the
 // composite.
-std::vector<CompositeLocal::Worth> CompositeReport::worthsOf(const Layers& layers, double error) const {
+std::vector<CompositeLocal::Worth> CompositeReport::worthsOf(const Layers& layers,
+                                                             const LayerPass::LocalWork& local) const {
     const vk::Device& device = kit_.input.device;
-    const LocalScale scale =
-        scaleOf(device.workers(), mixer_.light(layers), kit_.input.patches.scene.patches, error);
-    const LayerPass::WorthWork work{.composite = mixer_.composite(),
-                                    .deviation = static_cast<float>(scale.deviation),
-                                    .least = scale.least,
-                                    .aim = static_cast<float>(local_->p95)};
+    const LayerPass::WorthWork work{.local = local, .aim = static_cast<float>(local_->p95)};
     const vk::Buffer sums(
         device,
         {.size = layers.size() * sizeof(glm::vec4), .memory = vk::Memory::Host, .name = "worths of layers"});

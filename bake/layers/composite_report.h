@@ -16,13 +16,12 @@ namespace relume {
 /// beside those of others (vec4: R, G, B, and what is proportional to the standard error), `patches` tells
 /// which ones are shown, and `error` is the relRMSE of the whole that comes from samples: it says how large
 /// all these errors are. They are taken to be normally distributed. All is 0 where nothing is off, and 1
-/// where nothing is lit.
+/// where nothing is lit. `bias` is that of smoothing: it holds for each chunk the sum over its patches of the
+/// square of what the mean of R, G and B is off by it, as it was estimated [(cd/m^2)^2]; empty: there is
+/// none.
 LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, double error);
-/// Returns it with the bias of smoothing: `bias` holds for each chunk the sum over its patches of the square
-/// of what the mean of R, G and B is off by it, as it was estimated [(cd/m^2)^2].
-LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, double error, std::span<const double> bias);
+                        std::span<const shader::Patch> patches, double error,
+                        std::span<const double> bias = {});
 
 /// Has the schedule decide how far layers go, and tells how far the composite is off. Its local error takes a
 /// pass over all patches: it is measured where it plays a part, but not while somebody turns a light up and
@@ -44,7 +43,8 @@ public:
 private:
     bool wantsLocalError() const { return !kit_.settings.live || kit_.settings.localError > 0; }
     void measure(const Layers& layers);
-    std::vector<CompositeLocal::Worth> worthsOf(const Layers& layers, double error) const;
+    std::vector<CompositeLocal::Worth> worthsOf(const Layers& layers,
+                                                const LayerPass::LocalWork& local) const;
 
     LinkKit& kit_;
     const LayerSchedule& schedule_;

@@ -171,6 +171,11 @@ bool LayerMixer::mixFirstLight(const Layers& layers) {
     return true;
 }
 
+const vk::Buffer& LayerMixer::mixed(const Layers& layers) {
+    if (stale_ || light_.empty()) mix(layers);
+    return composite_;
+}
+
 const std::vector<glm::vec4>& LayerMixer::light(const Layers& layers) {
     if (stale_ || light_.empty()) {
         mix(layers);

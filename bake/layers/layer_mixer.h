@@ -51,7 +51,8 @@ public:
     /// Returns the composite, vec4 per patch: on the device as it was mixed last, and as it is now.
     const vk::Buffer& composite() const { return composite_; }
     const std::vector<glm::vec4>& light(const Layers& layers);
-    uint64_t version() const { return version_; } // of what a viewer is shown
+    const vk::Buffer& mixed(const Layers& layers); // as it is now, on the device
+    uint64_t version() const { return version_; }  // of what a viewer is shown
 
 private:
     using Weights = std::vector<shader::LayerWeight>;

@@ -75,15 +75,29 @@ void LayerPass::recordSketch(VkCommandBuffer cmd, const LightBuffers& light, con
     sketch_.dispatch(cmd, push, shader::kSketchStride, 1);
 }
 
-void LayerPass::recordWorth(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
-                            const WorthWork& work, const vk::Buffer& chunkSums) const {
-    const shader::LayerWorthPush push{.patches = light.patches.address(),
+void LayerPass::recordLocal(VkCommandBuffer cmd, const LightBuffers& light, const LocalWork& work,
+                            const vk::Buffer& bins, const vk::Buffer& chunkSums) const {
+    vkCmdFillBuffer(cmd, bins.handle(), 0, VK_WHOLE_SIZE, 0);
+    vk::barrier(cmd);
+    const shader::LayerLocalPush push{.patches = light.patches.address(),
                                       .composite = work.composite.address(),
-                                      .direct = layer.direct->address(),
-                                      .result = layer.result.address(),
+                                      .bins = bins.address(),
                                       .chunkSums = chunkSums.address(),
                                       .deviation = work.deviation,
                                       .least = work.least,
+                                      .chunkCount = light.chunkCount};
+    dispatchChunks(local_, cmd, push, light.chunkCount);
+}
+
+void LayerPass::recordWorth(VkCommandBuffer cmd, const LightBuffers& light, const Layer& layer,
+                            const WorthWork& work, const vk::Buffer& chunkSums) const {
+    const shader::LayerWorthPush push{.patches = light.patches.address(),
+                                      .composite = work.local.composite.address(),
+                                      .direct = layer.direct->address(),
+                                      .result = layer.result.address(),
+                                      .chunkSums = chunkSums.address(),
+                                      .deviation = work.local.deviation,
+                                      .least = work.local.least,
                                       .aim = work.aim,
                                       .chunkCount = light.chunkCount};
     dispatchChunks(worth_, cmd, push, light.chunkCount);

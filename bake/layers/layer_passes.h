@@ -28,7 +28,8 @@ public:
     explicit LayerPass(const vk::Device& device)
         : direct_(device, "layer_direct"), result_(device, "layer_result"), mix_(device, "layer_mix"),
           mixDirect_(device, "layer_mix_direct"), sketch_(device, "layer_sketch"),
-          worth_(vk::ComputeProgram::builtAtFirstUse(device, "layer_worth")) {}
+          worth_(vk::ComputeProgram::builtAtFirstUse(device, "layer_worth")),
+          local_(vk::ComputeProgram::builtAtFirstUse(device, "layer_local")) {}
 
     /// Direct light of a layer, and what is new of it.
     struct DirectWork {
@@ -46,12 +47,20 @@ public:
     /// Makes a sketch (SketchPush) of sums over links, vec4[kReplicates][patches].
     void recordSketch(VkCommandBuffer cmd, const LightBuffers& light, const vk::Buffer& sums,
                       const vk::Buffer& sketch) const;
-    /// Says how far off the composite is, patch by patch, and what is asked of it.
-    struct WorthWork {
+    /// Says how far off the composite is, patch by patch.
+    struct LocalWork {
         const vk::Buffer& composite; // vec4 per patch, as recordMix makes it
         float deviation = 0;         // standard error over the composite's w
         float least = 0;             // what is darker is off relative to this [cd/m^2]
-        float aim = 0;               // local error that 95 % of all texels are to come within
+    };
+    /// Counts texels in bins, which it clears, by how far they are off, or by their light where the deviation
+    /// is 0, and makes in chunkSums what LayerLocalPush says.
+    void recordLocal(VkCommandBuffer cmd, const LightBuffers& light, const LocalWork& work,
+                     const vk::Buffer& bins, const vk::Buffer& chunkSums) const;
+    /// Says what is asked of it, too.
+    struct WorthWork {
+        LocalWork local;
+        float aim = 0; // local error that 95 % of all texels are to come within
     };
     /// Makes in chunkSums a vec4 per chunk: variance of the layer's direct and of its indirect light, each
     /// patch by what it is worth for the local error (lib/local_error.glsl), and both as they are.
@@ -66,7 +75,7 @@ public:
                          const vk::Buffer& direct) const;
 
 private:
-    vk::ComputeProgram direct_, result_, mix_, mixDirect_, sketch_, worth_;
+    vk::ComputeProgram direct_, result_, mix_, mixDirect_, sketch_, worth_, local_;
 };
 
 } // namespace relume

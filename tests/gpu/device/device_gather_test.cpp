@@ -49,4 +49,26 @@ TEST_P(DeviceGather, ComesToWhatTheHostGathers) {
     EXPECT_LT(relativeError(host.lighting, device.lighting), GetParam().error);
 }
 
+// Where the local error of all layers together decides, the device counts the texels.
+TEST(DeviceGather, TellsTheLocalErrorOfLayersThatTheHostTells) {
+    if (!testDevice().info().software()) GTEST_SKIP() << "the device gathers anyway";
+    const Scene scene = generateScene("cornell_layers");
+    for (const double localError : {0.5, 0.08}) {
+        BakeDesc desc{.passes = 0,
+                      .error = 0.1,
+                      .localError = localError,
+                      .method = Method::Hybrid,
+                      .smooth = true,
+                      .layers = true};
+        const SolverProgress host = bakeScene(scene, desc).progress;
+        desc.deviceGather = true;
+        const SolverProgress device = bakeScene(scene, desc).progress;
+        EXPECT_LT(host.localError95, localError);
+        EXPECT_GT(host.localError95, 0.1 * localError);
+        EXPECT_NEAR(device.localError95, host.localError95, 0.01 * host.localError95);
+        EXPECT_NEAR(device.localError99, host.localError99, 0.01 * host.localError99);
+        EXPECT_EQ(device.rays, host.rays);
+    }
+}
+
 } // namespace relume

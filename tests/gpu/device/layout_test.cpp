@@ -131,6 +131,7 @@ const std::map<std::string, size_t> kSizes = {SIZE_OF(VoxelGrid),
                                               SIZE_OF(LayerMixPush),
                                               SIZE_OF(BounceLane),
                                               SIZE_OF(LayerWorthPush),
+                                              SIZE_OF(LayerLocalPush),
                                               SIZE_OF(BouncePush),
                                               SIZE_OF(ChunkSumPush)};
 #undef SIZE_OF
