@@ -133,7 +133,7 @@ void LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& st
     steps.gather(cmd);
     timestamps.mark(cmd, 2);
     record(steps.end, cmd);
-    kit_.run(cmd);
+    kit_.run(cmd, steps.meanwhile);
     kit_.progress.traceSeconds +=
         kit_.input.tracer.onCpu() && portions.front().trace ? cpuTrace : 1e-3 * timestamps.milliseconds(0, 1);
     kit_.progress.gatherSeconds += 1e-3 * timestamps.milliseconds(1, 2);

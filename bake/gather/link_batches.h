@@ -43,7 +43,8 @@ public:
             finish(samplePass, portion);
     }
 
-    /// The solver's share of a batch. Each is called once, in this order; an empty one records nothing.
+    /// The solver's share of a batch. Each is called once, in this order; an
+    /// empty one records nothing.
     struct Steps {
         std::function<void(VkCommandBuffer)> begin;  // ahead of all
         std::function<void(VkCommandBuffer)> traced; // behind the links that were traced
@@ -51,6 +52,7 @@ public:
         // Behind what was gathered at once: tells whether `end` records.
         std::function<bool()> endRecords;
         std::function<void(VkCommandBuffer)> end; // null where it does not
+        std::function<void()> meanwhile;          // while the device works, if it does
     };
     /// Runs a batch of portions that all are traced, or none, and measures it. Where the CPU traces and
     /// gathers there is no submit, which would take longer than a small batch; `atOnce` says that this is

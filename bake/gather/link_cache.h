@@ -45,6 +45,9 @@ public:
     /// Returns the place of the links of up to `most` chunks from `first` on, of a batch that has had so many
     /// chunks `before`: none where it has no room for more.
     Place find(uint32_t samplePass, uint32_t first, uint32_t most, uint32_t before = 0);
+    /// Takes the memory for the links of a sample pass that will be asked for next, where whole ones are
+    /// kept: a GPU's driver takes a millisecond for it, which find() would wait for.
+    void prepare(uint32_t samplePass) { keepIfRoom(samplePass); }
     /// Returns a place for links that are read once: those of up to `most` chunks with so many sample passes
     /// each. What is kept of a sample pass is forgotten first.
     Place passing(uint32_t samplePasses, uint32_t most);

@@ -49,9 +49,15 @@ void LinkKit::recordBack(VkCommandBuffer cmd, const vk::Buffer& from, VkDeviceSi
 }
 
 void LinkKit::run(VkCommandBuffer cmd) {
+    run(cmd, {});
+}
+
+void LinkKit::run(VkCommandBuffer cmd, const std::function<void()>& meanwhile) {
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
-    commands.run();
+    const uint64_t value = commands.submit();
+    if (meanwhile) meanwhile();
+    commands.wait(value);
 }
 
 void LinkKit::recordRayCount(VkCommandBuffer cmd) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "bake/base/batch_rate.h"
@@ -71,6 +72,8 @@ public:
     }
     /// Submits and waits, with the barriers for what comes next and for the CPU.
     void run(VkCommandBuffer cmd);
+    /// Does the same, and calls this, where it is something, while the device works.
+    void run(VkCommandBuffer cmd, const std::function<void()>& meanwhile);
     /// Reads the counters of rays back and begins to count anew; countRays() takes them into the progress
     /// after the submit.
     void recordRayCount(VkCommandBuffer cmd);

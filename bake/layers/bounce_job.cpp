@@ -109,6 +109,11 @@ bool BounceJob::onePortion(const Portion& portion) {
                 if (atOnce) recordDistances(cmd);
                 seen = kit.order.left() == 0 && recordPassEnd(cmd);
             },
+        .meanwhile =
+            [&cache = tools_->batches.cache(), next = samplePass_ + 1,
+             isNext = stage_ == Stage::Gather && samplePass_ + 1 < linkSamplePasses()] {
+                if (isNext) cache.prepare(next);
+            },
     };
     tools_->batches.run(std::span(&portion, 1), steps, atOnce);
     return seen;

@@ -194,6 +194,30 @@ TEST(Spill, ACacheKnowsItsChunksOnBothSides) {
     EXPECT_FALSE(at(5).known) << "what goes through forgets";
 }
 
+// While the device works, the links' next memory is taken, and no other.
+TEST(Spill, ACacheIsPreparedForTheNextSamplePass) {
+    constexpr uint64_t kSamplePass = 10 * 16 * 64 * 4;
+    const vk::MemoryLedger& ledger = testDevice().ledger();
+    LinkCache cache(testDevice(), {.chunkCount = 10,
+                                   .links = 16,
+                                   .batch = 4,
+                                   .bytes = 2 * kSamplePass,
+                                   .deviceBytes = 2 * kSamplePass});
+    const auto takes = [&](uint32_t samplePass, bool prepares) {
+        const uint64_t before = ledger.allocations();
+        prepares ? cache.prepare(samplePass) : void(cache.find(samplePass, 0, 10));
+        return ledger.allocations() - before;
+    };
+    EXPECT_EQ(takes(1, true), 0u) << "this one is not the next";
+    EXPECT_EQ(takes(0, true), 1u);
+    EXPECT_EQ(takes(0, true), 0u);
+    EXPECT_EQ(takes(0, false), 0u);
+    EXPECT_FALSE(cache.find(0, 0, 10).known) << "nobody has traced them";
+    EXPECT_EQ(takes(1, false), 1u);
+    EXPECT_EQ(takes(2, true), 0u) << "there is no room";
+    EXPECT_EQ(cache.bytes(), 2 * kSamplePass);
+}
+
 // A bake takes no more of a device than its limit, and spills what has no room.
 TEST(Spill, ALimitIsKept) {
     constexpr uint32_t kScale = 4; // more patches than a batch has: what the batches take is not spilled
