@@ -64,19 +64,18 @@ void LinkErrors::resolveOnHost(const LinkState& state, double sigma) const {
     if (state.hasScales()) smoothing.scales = buffers.scales.as<glm::vec2>();
     smoothing.rowChunks = kit_.rankChunks.rowMarks();
     smoothing.chunks = own_;
-    resolveLinks(kit_.gatherPass.pool(),
-                 {.smoothing = smoothing,
-                  .directSums = state.directSamplePasses > 0 && buffers.directSums
-                                    ? buffers.directSums.as<glm::vec4>()
-                                    : nullptr,
-                  .result = buffers.result.as<glm::vec4>(),
-                  .scale = scale(links / static_cast<float>(shader::kReplicates)),
-                  .directScale = scale(static_cast<float>(state.directSamplePasses)),
-                  .floor = static_cast<float>(kLocalFloor * state.median),
-                  .sums = buffers.chunkSums.as<shader::ResolveSums>(),
-                  .local = reinterpret_cast<shader::LocalSums*>(local + kLocalSumsAt),
-                  .lightBins = bins,
-                  .errorBins = bins + shader::kLightBins});
+    resolveLinks(kit_.gatherPass.pool(), {.smoothing = smoothing,
+                                          .directSums = state.directSamplePasses > 0 && buffers.directSums
+                                                            ? buffers.directSums.as<glm::vec4>()
+                                                            : nullptr,
+                                          .result = buffers.result.as<glm::vec4>(),
+                                          .scale = scale(links / static_cast<float>(shader::kReplicates)),
+                                          .directScale = scale(static_cast<float>(state.directSamplePasses)),
+                                          .floor = static_cast<float>(kLocalFloor * state.median),
+                                          .sums = buffers.chunkSums.as<shader::ResolveSums>(),
+                                          .local = reinterpret_cast<shader::LocalSums*>(local + kLocalSumsAt),
+                                          .lightBins = bins,
+                                          .errorBins = bins + shader::kLightBins});
 }
 
 LinkErrors::Local LinkErrors::local() const {
