@@ -43,20 +43,26 @@ std::unique_ptr<Assimp::IOStream> withoutMark(std::unique_ptr<Assimp::IOStream> 
     return stream;
 }
 
-/// Opens the file itself, and of all others those that NearFiles finds; for reading alone.
-class NearSystem final : public Assimp::DefaultIOSystem {
+/// Opens the file itself, and of all others those that NearFiles finds; for reading alone. It has libassimp's own
+/// system open them, from which newer versions let nobody derive.
+class NearSystem final : public Assimp::IOSystem {
 public:
     /// Appends the names of material libraries that are looked for and not found.
     NearSystem(std::string model, NearFiles& near, std::vector<std::string>& missingLibraries)
         : model_(std::move(model)), near_(near), missingLibraries_(missingLibraries) {}
 
     bool Exists(const char* file) const override { return !pathOf(file).empty(); }
+    char getOsSeparator() const override { return files_.getOsSeparator(); }
+    void Close(Assimp::IOStream* stream) override { files_.Close(stream); }
+    bool ComparePaths(const char* one, const char* second) const override {
+        return files_.ComparePaths(one, second);
+    }
     Assimp::IOStream* Open(const char* file, const char* mode) override {
         const std::string path = pathOf(file);
         if (path.empty() && lowerEnding(file) == ".mtl")
             missingLibraries_.push_back(std::filesystem::path(file).filename().string());
         if (path.empty() || std::string(mode).find_first_of("wa+") != std::string::npos) return nullptr;
-        std::unique_ptr<Assimp::IOStream> stream(DefaultIOSystem::Open(path.c_str(), mode));
+        std::unique_ptr<Assimp::IOStream> stream(files_.Open(path.c_str(), mode));
         const std::string ending = lowerEnding(file);
         if (stream && (ending == ".obj" || ending == ".mtl")) stream = withoutMark(std::move(stream));
         return stream.release();
@@ -65,6 +71,7 @@ public:
 private:
     std::string pathOf(const std::string& file) const { return file == model_ ? file : near_.find(file); }
 
+    Assimp::DefaultIOSystem files_;
     std::string model_;
     NearFiles& near_;
     std::vector<std::string>& missingLibraries_;

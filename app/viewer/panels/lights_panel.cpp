@@ -177,8 +177,7 @@ void LightsPanel::drawPreview(const PanelContext& context, const LightSource& so
     const ImU32 tint = dark ? IM_COL32(255, 255, 255, 70) : IM_COL32_WHITE;
     list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg));
     if (texture != 0)
-        list.AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture)), low, high, {0, 0},
-                      {1, 1}, tint);
+        list.AddImage(ImTextureID(static_cast<intptr_t>(texture)), low, high, {0, 0}, {1, 1}, tint);
     if (context.view.light == source.key) list.AddRect(low, high, ImGui::GetColorU32(ImGuiCol_HeaderActive));
 }
 

@@ -174,7 +174,7 @@ bool StartPage::drawScene(const ShippedScene& scene, float width) {
     const ImVec2 low(at.x + border, at.y + border), high(at.x + width - border, low.y + pictureHeight);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     if (const uint32_t texture = pictures_.texture(scene.picture); texture != 0)
-        list.AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture)), low, high);
+        list.AddImage(ImTextureID(static_cast<intptr_t>(texture)), low, high);
     else
         list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg));
     const std::string name = shortened(scene.name, width - 2 * border);

@@ -105,7 +105,7 @@ Gui::~Gui() {
 
 void Gui::setScale(float scale) {
     if (scale == scale_) return;
-    const bool again = scale_ > 0;
+    [[maybe_unused]] const bool again = scale_ > 0;
     scale_ = scale;
     ImGuiStyle style;
     setColours(style);
@@ -116,8 +116,10 @@ void Gui::setScale(float scale) {
     style.ScaleAllSizes(scale);
     ImGui::GetStyle() = style;
     loadFont(scale);
+#if IMGUI_VERSION_NUM < 19200 // later ones do so themselves
     if (again) ImGui_ImplOpenGL3_DestroyFontsTexture();
     if (again) ImGui_ImplOpenGL3_CreateFontsTexture();
+#endif
 }
 
 void Gui::feed(const WindowEvent& event) {
