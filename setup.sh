@@ -6,7 +6,7 @@
 #   ./setup.sh --web  Chromium, Node.js and the npm packages of tests/web too, which open exported levels
 #
 # Debian 12: Mesa comes from bookworm-backports (the stock Mesa 22.3 has no ray tracing); the suite is added to apt's
-# sources where it is missing. RELUME_KEEP_MESA=1 leaves an installed older Mesa alone. Debian 13 and Ubuntu 24.04: the
+# sources where it is missing. RELUME_KEEP_MESA=1 leaves an installed older Mesa alone. Debian 13, Ubuntu 24.04 and 26.04: the
 # stock packages. Anything else: prints what is needed and stops with status 1.
 # Nothing is ever removed, and a vendor's own driver stays: Mesa's software Vulkan device is installed beside it.
 set -euo pipefail
@@ -48,10 +48,10 @@ systemName() {
 
 requireKnownSystem() {
     case "$system" in
-        "debian 12" | "debian 13" | "ubuntu 24.04") return ;;
+        "debian 12" | "debian 13" | "ubuntu 24.04" | "ubuntu 26.04") return ;;
     esac
     {
-        echo "setup: this is '$system'; only Debian 12, Debian 13 and Ubuntu 24.04 are set up by this script."
+        echo "setup: this is '$system'; only Debian 12 and 13, Ubuntu 24.04 and 26.04 are set up by this script."
         echo "Install these (Debian's names) by hand, then build as the README says:"
         echo "  ${packages[*]} and drivers of Vulkan 1.2 and OpenGL 4.5 (tested: Mesa $testedMesa)"
     } >&2

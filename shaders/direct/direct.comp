@@ -8,6 +8,7 @@
 #include "lib/preamble.glsl"
 #include "lib/sampling.glsl"
 layout(push_constant, scalar) uniform Push { DirectPush push; };
+#define LISTED_INSTEAD push.picks
 #include "lib/listed_chunk.glsl"
 #include "lib/light/penumbra_sample_passes.glsl"
 #include "lib/light/seen_light.glsl"

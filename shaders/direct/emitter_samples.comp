@@ -8,6 +8,7 @@
 #include "lib/form_factor.glsl"
 #include "lib/light/polygon_sample.glsl"
 layout(push_constant, scalar) uniform Push { EmitterSamplesPush push; };
+#define LISTED_INSTEAD push.patches
 #include "lib/listed_chunk.glsl"
 #include "lib/rays/starts.glsl"
 #include "lib/light/texel_mean.glsl"

@@ -11,7 +11,7 @@ void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
     Vec4s carried = Vec4s(push.carried), light = Vec4s(push.light);
-    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
+    vec3 direct = vec4IfAny(push.direct, index, push.carried).rgb;
     if (push.share > 0.0)
         VEC4_AT(carried, index) = vec4(mix(VEC4_AT(carried, index).rgb, VEC4_AT(light, index).rgb - direct, push.share), 0.0);
     else

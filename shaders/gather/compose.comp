@@ -13,7 +13,8 @@ void main() {
     uint index = (push.firstChunk + chunk) * kChunk + gl_LocalInvocationID.x;
     vec3 sum = vec3(0.0);
     for (uint q = 0u; q < kReplicates; ++q) sum += VEC4_AT(push.sums, q * push.patchCount + index).rgb;
-    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
-    float scale = push.scales != 0ul ? Vec2s(push.scales).items[index / kChunk][push.sampled] / float(kReplicates) : push.scale;
+    vec3 direct = vec4IfAny(push.direct, index, push.sums).rgb;
+    vec2 scales = vec2IfAny(push.scales, index / kChunk, push.sums, vec2(0.0));
+    float scale = push.scales != 0ul ? scales[push.sampled] / float(kReplicates) : push.scale;
     VEC4_AT(push.light, index) = vec4(max(direct + sum * scale, 0.0), 1.0);
 }

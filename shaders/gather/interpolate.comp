@@ -33,7 +33,7 @@ void main() {
         }
     }
     vec3 total = sum[0] + sum[1] + sum[2] + sum[3];
-    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
+    vec3 direct = vec4IfAny(push.direct, index, push.coarse).rgb;
     VEC4_AT(push.ligOut, index) = vec4(direct + push.scale * total, 1.0);
     if (push.sums != 0ul) {
         Vec4s sums = Vec4s(push.sums);

@@ -25,7 +25,7 @@ void main() {
         for (uint q = 0u; q < kReplicates; ++q) sum[q] += sent(WORD_AT(links, row + q * kChunk));
     }
     vec3 total = sum[0] + sum[1] + sum[2] + sum[3];
-    vec3 direct = push.direct != 0ul ? VEC4_AT(push.direct, index).rgb : vec3(0.0);
+    vec3 direct = vec4IfAny(push.direct, index, push.links).rgb;
     if (push.ligOut != 0ul) VEC4_AT(push.ligOut, index) = vec4(direct + total / float(push.sampleCount), 1.0);
     if (push.sums != 0ul) {
         Vec4s sums = Vec4s(push.sums);

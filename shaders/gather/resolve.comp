@@ -55,11 +55,10 @@ void main() {
     chunk += push.firstChunk;
     uint index = chunk * kChunk + lane;
     vec3 direct[kReplicates], raw[kReplicates], smoothed[kReplicates], moved[kReplicates];
-    vec2 scales = push.scales != 0ul ? Vec2s(push.scales).items[chunk] : vec2(push.scale, push.directScale);
+    vec2 scales = vec2IfAny(push.scales, chunk, push.patches, vec2(push.scale, push.directScale));
     float rowScale = push.scales != 0ul ? 1.0 : push.scale; // else rows are of means
     for (uint q = 0u; q < kReplicates; ++q) {
-        direct[q] = push.directSums != 0ul ? scales.y * VEC4_AT(push.directSums, q * push.patchCount + index).rgb
-                                           : vec3(0.0);
+        direct[q] = scales.y * vec4IfAny(push.directSums, q * push.patchCount + index, push.patches).rgb;
         raw[q] = scales.x * VEC4_AT(push.sums, q * push.patchCount + index).rgb;
         smoothed[q] = vec3(0.0);
     }

@@ -17,7 +17,7 @@ void main() {
     for (uint q = 0u; q < kReplicates; ++q) value[q] = vec3(0.0);
     for (uint t = 0u; t < 2u * push.reach + 1u; ++t) {
         if (taps.weight[t] == 0.0) continue;
-        float weight = taps.weight[t] * (push.scales != 0ul ? Vec2s(push.scales).items[taps.index[t] / kChunk].x : 1.0);
+        float weight = taps.weight[t] * vec2IfAny(push.scales, taps.index[t] / kChunk, push.patches, vec2(1.0)).x;
         for (uint q = 0u; q < kReplicates; ++q)
             value[q] += weight * VEC4_AT(push.sums, q * push.patchCount + taps.index[t]).rgb;
     }

@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
-    vec4 sum = push.base != 0ul ? VEC4_AT(push.base, index) : vec4(0.0);
+    vec4 sum = vec4IfAny(push.base, index, push.layers);
     for (uint i = 0u; i < push.layerCount; ++i) {
         LayerWeight layer = Weights(push.layers).items[i];
         vec4 light = VEC4_AT(layer.light, index);

@@ -14,7 +14,7 @@ void main() {
     if (chunk >= push.chunkCount) return;
     uint index = chunk * kChunk + lane;
     vec4 direct = VEC4_AT(push.direct, index);
-    vec4 indirect = push.indirect != 0ul ? VEC4_AT(push.indirect, index) : vec4(0.0);
+    vec4 indirect = vec4IfAny(push.indirect, index, push.direct);
     vec3 light = direct.rgb + indirect.rgb;
     VEC4_AT(push.result, index) = vec4(light, sqrt(direct.w / 3.0 + indirect.w * indirect.w));
     uint flags = loadPatch(push.patches, index).flags;

@@ -29,6 +29,17 @@ Clock::time_point after(double seconds) {
 // The viewer says so when what it was sent is on the screen, with the number of inputs that it has taken.
 constexpr std::string_view kSettled = "settled: ";
 
+// Returns a key's name ("ctrl+F5") with the code of a function key, which X has on all keyboards, in place of
+// it: newer xdotools press Alt along, as that is one of the ways to the key's symbol.
+std::string withKeyCode(const std::string& name) {
+    constexpr std::array kCodes = {67, 68, 69, 70, 71, 72, 73, 74, 75, 76, 95, 96}; // of F1 to F12
+    const size_t key = name.rfind('+') + 1;
+    for (size_t i = 0; i < kCodes.size(); ++i)
+        if (name.substr(key) == "F" + std::to_string(i + 1))
+            return name.substr(0, key) + std::to_string(kCodes[i]);
+    return name;
+}
+
 [[noreturn]] void becomeRelume(const ViewerProcess::Desc& desc, int err) {
     const int nothing = open("/dev/null", O_RDWR);
     dup2(nothing, STDIN_FILENO);
@@ -155,7 +166,7 @@ void ViewerProcess::xdotool(const std::vector<std::string>& arguments) {
 
 void ViewerProcess::keys(const std::vector<std::string>& names) {
     for (const std::string& name : names)
-        xdotool({"key", "--delay", "40", name});
+        xdotool({"key", "--delay", "40", withKeyCode(name)});
 }
 
 void ViewerProcess::press(const std::string& name) {

@@ -6,6 +6,7 @@
 layout(constant_id = 0) const uint kLampTypes = 0x3fu;
 #define LAMP_TYPES kLampTypes
 layout(push_constant, scalar) uniform Push { LampPush push; };
+#define LISTED_INSTEAD push.patches
 #include "lib/listed_chunk.glsl"
 #include "lib/rays/starts.glsl"
 #include "lib/light/texel_mean.glsl"

@@ -4,6 +4,7 @@
 // and not in a list, because a GPU takes shared memory from the cache that it reads the tree through: with a list of
 // 8 KiB the rays of a hall took 22 % longer on an NVIDIA H200.
 #include "lib/rays/starts.glsl"
+#define LISTED_INSTEAD push.patches
 #include "lib/listed_chunk.glsl"
 
 const uint kTargetsPerWord = 32u;

@@ -2,6 +2,7 @@
 // ray pipelines, whose invocations share nothing, and voxels, which serve some targets only; lib/rays/numbered_segments.glsl
 // serves the others.
 #include "lib/rays/starts.glsl"
+#define LISTED_INSTEAD push.patches
 #include "lib/listed_chunk.glsl"
 
 const uint kTargetsPerWord = 32u;

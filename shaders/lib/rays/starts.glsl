@@ -4,8 +4,10 @@
 // Returns the cover of a patch. It is loaded once for all of its samples: that costs software devices more
 // than the points do.
 PatchCover coverOf(uint patchIndex) {
-    if (push.covers != 0ul) return loadCover(push.covers, patchIndex);
-    return PatchCover(vec3(0.0), 0u, vec3(0.0), 0u);
+    bool any = push.covers != 0ul; // something is read in any case, as by vec4IfAny()
+    PatchCover cover = loadCover(any ? push.covers : push.patches, any ? patchIndex : 0u);
+    if (!any) cover = PatchCover(vec3(0.0), 0u, vec3(0.0), 0u);
+    return cover;
 }
 
 // Returns the patch as sample `number` sees it.
