@@ -43,8 +43,8 @@ std::unique_ptr<Assimp::IOStream> withoutMark(std::unique_ptr<Assimp::IOStream> 
     return stream;
 }
 
-/// Opens the file itself, and of all others those that NearFiles finds; for reading alone. It has libassimp's own
-/// system open them, from which newer versions let nobody derive.
+/// Opens the file itself, and of all others those that NearFiles finds; for reading alone. It has libassimp's
+/// own system open them, from which newer versions let nobody derive.
 class NearSystem final : public Assimp::IOSystem {
 public:
     /// Appends the names of material libraries that are looked for and not found.
