@@ -51,7 +51,7 @@ LocalScale scaleOf(const Shown& all, double error) {
 LocalError localErrorOf(WorkerPool& pool, Deviations off, std::span<const double> bias) {
     const LocalError noise = normalErrorOf(off.bins);
     if (bias.empty()) return noise;
-    for (size_t c = 0; c < off.chunks.size(); ++c)
+    for (size_t c = 0; c < std::min(bias.size(), off.chunks.size()); ++c)
         if (off.chunks[c].texels > 0) off.chunks[c].bias = bias[c] * off.inverse[c] / off.chunks[c].texels;
     return withBias(pool, noise, off.chunks);
 }

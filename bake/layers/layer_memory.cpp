@@ -45,6 +45,9 @@ SpilledBytes layerSolverBytes(const SolverExtent& extent, const SolverSettings& 
     const bool onCpu = extent.software && !settings.transport.deviceGather;
     // A GPU tells a sketch of the error, which is read back.
     const uint64_t sketch = onCpu ? 0 : kSketchEntries * sizeof(glm::vec3);
+    // It counts the composite's texels, too, where that is wanted at all (CompositeReport).
+    const bool counts = !onCpu && (!settings.live || settings.localError > 0);
+    const uint64_t bins = counts ? shader::kBinCopies * shader::kBinsOfCopy * sizeof(uint32_t) : 0;
     const uint64_t sums =
         chunks * (sizeof(shader::ResolveSums) + sizeof(glm::vec4)) + shader::kRayCounters * sizeof(uint32_t);
     const uint64_t back = std::max(sums, onCpu ? 0 : kLevelSumsAt + chunks * sizeof(shader::ResolveSums));
@@ -52,7 +55,7 @@ SpilledBytes layerSolverBytes(const SolverExtent& extent, const SolverSettings& 
     // The composite, and where somebody watches the sum of the layers that do not change.
     const uint64_t mixed = (settings.live ? 2 : 1) * count * sizeof(glm::vec4);
     SpilledBytes bytes = LinkBuffers::bytes(extent, desc, 0);
-    bytes.device += direct + staging + parts + back + sketch + bounces + mixed;
+    bytes.device += direct + staging + parts + back + sketch + bins + bounces + mixed;
     return bytes;
 }
 

@@ -12,7 +12,8 @@
 
 namespace relume::vk {
 
-/// Values of specialization constants 0, 1, 2, ... (bool as 0 or 1).
+/// Values of specialization constants 0, 1, 2, ... (bool as 0 or 1). Constant 100 tells every shader whether
+/// it runs on a software device.
 using Constants = std::vector<uint32_t>;
 
 class ComputePipeline;

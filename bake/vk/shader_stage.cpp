@@ -5,14 +5,17 @@ namespace relume::vk {
 namespace {
 
 constexpr uint32_t kPushBytes = 128; // what every Vulkan device has
+constexpr uint32_t kSoftwareDevice =
+    100; // the constant of all shaders that says so (shaders/lib/buffers.glsl)
 
 } // namespace
 
 ShaderStage::ShaderStage(const Device& device, std::span<const uint32_t> code, VkShaderStageFlagBits stage,
                          const Constants& constants)
     : device_(device), stage_(stage), constants_(constants) {
+    constants_.push_back(device.info().software() ? 1 : 0);
     for (uint32_t i = 0; i < constants_.size(); ++i)
-        entries_.push_back({i, i * 4, 4});
+        entries_.push_back({i + 1 < constants_.size() ? i : kSoftwareDevice, i * 4, 4});
     specialization_ = {static_cast<uint32_t>(entries_.size()), entries_.data(), constants_.size() * 4,
                        constants_.data()};
     VkShaderModuleCreateInfo info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};

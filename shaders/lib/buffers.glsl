@@ -15,22 +15,27 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Pyr
 #define UVEC2_AT(array, index) UVec2s(uint64_t(array) + 8ul * uint64_t(index)).items[0]
 #define WORD_AT(array, index) Words(uint64_t(array) + 4ul * uint64_t(index)).items[0]
 #define FLOAT_AT(array, index) Floats(uint64_t(array) + 4ul * uint64_t(index)).items[0]
-// An element of an array that may not be there (address 0); else `otherwise`. Mesa 26's software device reads ahead of a
-// condition what is read behind it, so something is read in any case: the beginning of `instead`, which is there.
+// Returns an element of an array that may not be there (address 0); else `otherwise`. Mesa 26's software device reads ahead
+// of a condition what is read behind it. So there something is read in any case: the beginning of `instead`, which is
+// there. A GPU would wait for it.
+layout(constant_id = 100) const bool kSoftwareDevice = false;
+bool readsAny(ADDRESS array) { return kSoftwareDevice || array != 0ul; }
+ADDRESS readable(ADDRESS array, ADDRESS instead) { return !kSoftwareDevice || array != 0ul ? array : instead; }
+uint readableAt(ADDRESS array, uint index) { return !kSoftwareDevice || array != 0ul ? index : 0u; }
 uint wordIfAny(ADDRESS array, uint index, ADDRESS instead, uint otherwise) {
-    bool any = array != 0ul;
-    uint value = WORD_AT(any ? array : instead, any ? index : 0u);
-    return any ? value : otherwise;
+    uint value = otherwise;
+    if (readsAny(array)) value = WORD_AT(readable(array, instead), readableAt(array, index));
+    return array != 0ul ? value : otherwise;
 }
 vec2 vec2IfAny(ADDRESS array, uint index, ADDRESS instead, vec2 otherwise) {
-    bool any = array != 0ul;
-    vec2 value = Vec2s(any ? array : instead).items[any ? index : 0u];
-    return any ? value : otherwise;
+    vec2 value = otherwise;
+    if (readsAny(array)) value = Vec2s(readable(array, instead)).items[readableAt(array, index)];
+    return array != 0ul ? value : otherwise;
 }
 vec4 vec4IfAny(ADDRESS array, uint index, ADDRESS instead) {
-    bool any = array != 0ul;
-    vec4 value = VEC4_AT(any ? array : instead, any ? index : 0u);
-    return any ? value : vec4(0.0);
+    vec4 value = vec4(0.0);
+    if (readsAny(array)) value = VEC4_AT(readable(array, instead), readableAt(array, index));
+    return array != 0ul ? value : vec4(0.0);
 }
 
 Rows rowsAt(ADDRESS array, uint index, uint count) { return Rows(array + 16ul * uint64_t(count) * uint64_t(index)); }

@@ -4,9 +4,10 @@
 // Returns the cover of a patch. It is loaded once for all of its samples: that costs software devices more
 // than the points do.
 PatchCover coverOf(uint patchIndex) {
-    bool any = push.covers != 0ul; // something is read in any case, as by vec4IfAny()
-    PatchCover cover = loadCover(any ? push.covers : push.patches, any ? patchIndex : 0u);
-    if (!any) cover = PatchCover(vec3(0.0), 0u, vec3(0.0), 0u);
+    PatchCover none = PatchCover(vec3(0.0), 0u, vec3(0.0), 0u), cover = none;
+    if (readsAny(push.covers)) // and else nothing, as vec4IfAny() does
+        cover = loadCover(readable(push.covers, push.patches), readableAt(push.covers, patchIndex));
+    if (push.covers == 0ul) cover = none;
     return cover;
 }
 
