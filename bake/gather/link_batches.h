@@ -43,8 +43,7 @@ public:
             finish(samplePass, portion);
     }
 
-    /// The solver's share of a batch. Each is called once, in this order; an
-    /// empty one records nothing.
+    /// The solver's share of a batch. Each is called once, in this order; an empty one records nothing.
     struct Steps {
         std::function<void(VkCommandBuffer)> begin;  // ahead of all
         std::function<void(VkCommandBuffer)> traced; // behind the links that were traced

@@ -196,10 +196,6 @@ private:
     vk::Buffer bins_;
 };
 
-} // namespace
-
-namespace {
-
 // Returns the bias of smoothing of the layers' sum for each chunk, as localErrorOf() takes it; empty where no
 // layer knows its own. `alike` is as of Composite: biases have as much in common as errors.
 std::vector<double> biasOf(std::span<Layer* const> layers, double alike) {

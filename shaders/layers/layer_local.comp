@@ -9,7 +9,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Bins { uint 
 
 layout(local_size_x = 64) in;
 
-// What is relative to no light at all is not finite; its square stays so.
+// These keep squares finite where light is next to none.
 const float kLeastLight = 1e-15, kMostOff = 1e15;
 
 shared vec4 terms[kChunk];

@@ -49,7 +49,7 @@ TEST_P(DeviceGather, ComesToWhatTheHostGathers) {
     EXPECT_LT(relativeError(host.lighting, device.lighting), GetParam().error);
 }
 
-// Where the local error of all layers together decides, the device counts the texels.
+// The device counts the texels where the local error of all layers together decides.
 TEST(DeviceGather, TellsTheLocalErrorOfLayersThatTheHostTells) {
     if (!testDevice().info().software()) GTEST_SKIP() << "the device gathers anyway";
     const Scene scene = generateScene("cornell_layers");
