@@ -183,7 +183,7 @@ struct SmoothPush {
     ADDRESS distances;  // float[patchCount][2] [m], of what lights a patch, along rows and columns
     ADDRESS scales;     // vec2[chunkCount]: in place of scale and directScale; 0: these hold for all
     ADDRESS
-    local; // uint[kLightBins + kErrorBins], then LocalSums[chunkCount] (lib/local_error.glsl); 0: none
+    local; // uint[kBinCopies][kBinsOfCopy], then LocalSums[chunkCount] (lib/local_error.glsl); 0: none
     uint firstChunk, chunkCount; // that are made
     uint patchCount;             // of all
     uint size;                   // lightmap edge [texels]

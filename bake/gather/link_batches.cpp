@@ -87,11 +87,13 @@ void LinkBatches::finish(uint32_t samplePass, const Portion& portion) {
 void LinkBatches::run(std::span<const Portion> portions, const Steps& steps, bool atOnce) {
     ASSERT(!portions.empty());
     const auto start = Clock::now();
-    atOnce ? runAtOnce(portions, steps) : runBySubmit(portions, steps);
+    double beside = 0; // [s] that went by without the device
+    atOnce ? runAtOnce(portions, steps) : runBySubmit(portions, steps, beside);
     double chunks = 0;
     for (const Portion& portion : portions)
         chunks += double(portion.range.count) * portion.samplePasses;
-    (portions.front().trace ? traceRate_ : gatherRate_).note(chunks, kit_.batchMs, secondsSince(start));
+    (portions.front().trace ? traceRate_ : gatherRate_)
+        .note(chunks, kit_.batchMs, secondsSince(start) - beside);
 }
 
 void LinkBatches::trace(std::span<const Portion> portions, VkCommandBuffer cmd) const {
@@ -114,7 +116,7 @@ void LinkBatches::runAtOnce(std::span<const Portion> portions, const Steps& step
     kit_.run(cmd);
 }
 
-void LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& steps) {
+void LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& steps, double& beside) {
     vk::Timestamps& timestamps = kit_.timestamps;
     VkCommandBuffer cmd = kit_.commands.begin();
     record(steps.begin, cmd);
@@ -133,7 +135,14 @@ void LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& st
     steps.gather(cmd);
     timestamps.mark(cmd, 2);
     record(steps.end, cmd);
-    kit_.run(cmd, steps.meanwhile);
+    double meanwhile = 0;
+    kit_.run(cmd, [&] {
+        if (!steps.meanwhile) return;
+        const auto begun = Clock::now();
+        steps.meanwhile();
+        meanwhile = secondsSince(begun);
+    });
+    beside = std::max(meanwhile - 1e-3 * timestamps.milliseconds(0, 2), 0.0);
     kit_.progress.traceSeconds +=
         kit_.input.tracer.onCpu() && portions.front().trace ? cpuTrace : 1e-3 * timestamps.milliseconds(0, 1);
     kit_.progress.gatherSeconds += 1e-3 * timestamps.milliseconds(1, 2);

@@ -75,7 +75,7 @@ private:
                             ChunkRange range) const;
     void trace(std::span<const Portion> portions, VkCommandBuffer cmd) const;
     void runAtOnce(std::span<const Portion> portions, const Steps& steps);
-    void runBySubmit(std::span<const Portion> portions, const Steps& steps);
+    void runBySubmit(std::span<const Portion> portions, const Steps& steps, double& beside);
 
     LinkKit& kit_;
     LinkCache cache_;

@@ -123,6 +123,15 @@ void LinkCache::forget() {
         std::fill(samplePass.known.begin(), samplePass.known.end(), uint8_t{0});
 }
 
+std::deque<LinkCache::SamplePass> LinkCache::release() {
+    const auto isEmpty = [](const SamplePass& samplePass) {
+        return std::find(samplePass.known.begin(), samplePass.known.end(), 1) == samplePass.known.end();
+    };
+    while (!kept_.empty() && isEmpty(kept_.back()))
+        kept_.pop_back();
+    return std::exchange(kept_, {});
+}
+
 void LinkCache::takeOver(std::deque<SamplePass> samplePasses) {
     ASSERT(!desc_.oneSamplePass && kept_.empty());
     const uint64_t each = samplePassChunks_ * chunkBytes_;

@@ -46,7 +46,7 @@ public:
     /// chunks `before`: none where it has no room for more.
     Place find(uint32_t samplePass, uint32_t first, uint32_t most, uint32_t before = 0);
     /// Takes the memory for the links of a sample pass that will be asked for next, where whole ones are
-    /// kept: a GPU's driver takes a millisecond for it, which find() would wait for.
+    /// kept: a GPU's driver takes 20 ms for each GB, which find() would wait for.
     void prepare(uint32_t samplePass) { keepIfRoom(samplePass); }
     /// Returns a place for links that are read once: those of up to `most` chunks with so many sample passes
     /// each. What is kept of a sample pass is forgotten first.
@@ -61,8 +61,8 @@ public:
         vk::Buffer links;           // uint[chunk][links][64]
         std::vector<uint8_t> known; // per chunk that is kept
     };
-    /// Gives away the sample passes that are kept.
-    std::deque<SamplePass> release() { return std::exchange(kept_, {}); }
+    /// Gives away the sample passes that are kept, without the last ones of which no link is known yet.
+    std::deque<SamplePass> release();
     /// Takes them over as they are, as far as there is room; of as many chunks, with as many links each.
     void takeOver(std::deque<SamplePass> samplePasses);
 

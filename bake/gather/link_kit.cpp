@@ -56,7 +56,12 @@ void LinkKit::run(VkCommandBuffer cmd, const std::function<void()>& meanwhile) {
     vk::barrier(cmd);
     vk::hostBarrier(cmd);
     const uint64_t value = commands.submit();
-    if (meanwhile) meanwhile();
+    try {
+        if (meanwhile) meanwhile();
+    } catch (...) {
+        commands.wait(value); // the caller lets go of what the device works with
+        throw;
+    }
     commands.wait(value);
 }
 

@@ -186,8 +186,9 @@ private:
         kit_.input.device.workers().run((chunks + kChunksOfTask - 1) / kChunksOfTask, [&](uint32_t task) {
             const uint32_t end = std::min(chunks, (task + 1) * kChunksOfTask);
             for (uint32_t chunk = task * kChunksOfTask; chunk < end; ++chunk)
-                carryLinks(carry_.patches, chunk, samples, all,
-                           now + place.offset + size_t{chunk} * samples * kChunk);
+                if (known[chunk]) // else its links' memory may hold anything
+                    carryLinks(carry_.patches, chunk, samples, all,
+                               now + place.offset + size_t{chunk} * samples * kChunk);
         });
         if (!write.empty())
             vk::upload(kit_.input.device, *place.links, write.data(), write.size() * sizeof(uint32_t));

@@ -172,7 +172,7 @@ bool LayerMixer::mixFirstLight(const Layers& layers) {
 }
 
 const vk::Buffer& LayerMixer::mixed(const Layers& layers) {
-    if (stale_ || light_.empty()) mix(layers);
+    mix(layers); // what a viewer was shown is summed in another order
     return composite_;
 }
 

@@ -216,6 +216,10 @@ TEST(Spill, ACacheIsPreparedForTheNextSamplePass) {
     EXPECT_EQ(takes(1, false), 1u);
     EXPECT_EQ(takes(2, true), 0u) << "there is no room";
     EXPECT_EQ(cache.bytes(), 2 * kSamplePass);
+    cache.note(0, {3, 1});
+    const std::deque<LinkCache::SamplePass> left = cache.release();
+    ASSERT_EQ(left.size(), 1u) << "of the second one there is no link yet";
+    EXPECT_EQ(left[0].known[3], 1);
 }
 
 // A bake takes no more of a device than its limit, and spills what has no room.
