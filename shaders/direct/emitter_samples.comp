@@ -70,7 +70,18 @@ void main() {
     if (!all) {
         uint number = push.samplePass * push.pickCount + pick;
         uint seed = hash32(replicateSeed(key, number) ^ kPickSalt);
-        emitter = pickEmitter(start.position, start.shading, sobolPoint(replicateIndex(number), seed).x, probability);
+        float u = sobolPoint(replicateIndex(number), seed).x, nearby = max(spread.size, sqrt(p.area));
+        if (hasNearEmitter(spread.middle, nearby)) {
+            PickView view = pointView(start.position, start.shading);
+            view.near = nearby;
+            view.count = onePoint ? 0u : min(push.pointCount, kPickStarts);
+            for (uint s = 0u; s < view.count; ++s)
+                view.starts[s] = startingPatch(p, cover, startNumber(pick * push.pointCount + s, push.samplePass,
+                                                                     push.pickCount * push.pointCount, push.pointCount)).position;
+            emitter = pickNearEmitter(view, u, probability);
+        } else {
+            emitter = pickEmitter(start.position, start.shading, u, probability);
+        }
         sequence = replicateIndex(number) * push.pointCount;
     }
     vec3 light = vec3(0.0);

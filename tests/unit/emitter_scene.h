@@ -14,6 +14,7 @@ namespace relume::shader {
 struct EmitterTables {
     const EmitterSet* set;
     EmitterNode emitterNode(uint index) { return set->nodes[index]; }
+    EmitterPolygon emitterPolygon(uint index) { return set->polygons[index]; }
 #include "shaders/lib/light/pick_emitter.glsl"
 };
 

@@ -1,6 +1,11 @@
 // Lights with an area, sampled as lights. It is legal as GLSL and as C++ (namespace relume::shader); it comes
 // after lib/light/polygon_sample.glsl and lib/light/texel_mean.glsl. Occlusion is left to the caller.
 
+// Beside a light a pick is drawn for so many of its points' starts, at most.
+CONST uint kPickStarts = 4u;
+// A node is close within so many times its box's reach, from the middle.
+CONST float kCloseReaches = 1.4f;
+
 // The salt keeps the numbers of points apart from those of directions, which start from the same seeds.
 CONST uint kPointSalt = 0x1b873593u;
 
@@ -150,12 +155,11 @@ FUNCTION float emitterImportance(EmitterNode e, vec3 p, vec3 n) {
     return e.power * received * sent / max(d2, 0.25f * reach2);
 }
 
-// Returns the chance of going to the first of two children; negative when neither can shine on p. One that
-// can is never given less than a thousandth: importance is an estimate, and where it is far off this bounds
-// the noise, at next to no cost.
-FUNCTION float emitterShare(EmitterNode first, EmitterNode second, vec3 p, vec3 n) {
+// Returns the chance of going to the first of two children of these importances; negative when neither can
+// shine. One that can is never given less than a thousandth: importance is an estimate, and where it is far
+// off this bounds the noise, at next to no cost.
+FUNCTION float shareOfFirst(float a, float b) {
     const float kLeast = 0.001f;
-    float a = emitterImportance(first, p, n), b = emitterImportance(second, p, n);
     if (!(a + b > 0.0f)) return -1.0f;
     float share = a / (a + b);
     if (a > 0.0f) share = max(share, kLeast);

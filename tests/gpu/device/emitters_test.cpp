@@ -25,13 +25,20 @@ const char* const kKernel = R"(#version 460
 #include "lib/light/emitters.glsl"
 layout(push_constant, scalar) uniform Push { ADDRESS nodes, polygons, receivers, result; } push;
 EmitterNode emitterNode(uint index) { return loadEmitterNode(push.nodes, index); }
+EmitterPolygon emitterPolygon(uint index) { return loadEmitterPolygon(push.polygons, index); }
 #include "lib/light/pick_emitter.glsl"
 layout(local_size_x = 64) in;
 void main() {
     uint i = gl_GlobalInvocationID.x;
     vec4 p = Vec4s(push.receivers).items[2u * i], n = Vec4s(push.receivers).items[2u * i + 1u];
     float probability;
-    uint picked = pickEmitter(p.xyz, n.xyz, p.w, probability);
+    uint picked;
+    if (i % 2u == 0u) {
+        picked = pickEmitter(p.xyz, n.xyz, p.w, probability);
+    } else {
+        PickView view = pointView(p.xyz, n.xyz);
+        picked = pickNearEmitter(view, p.w, probability);
+    }
     vec4 result = vec4(uintBitsToFloat(picked), probability, 0.0, 0.0);
     if (picked != kNoEmitter) {
         EmitterPolygon e = loadEmitterPolygon(push.polygons, picked);
@@ -86,7 +93,8 @@ TEST(Emitters, AreSampledOnTheDeviceAsOnTheHost) {
         const glm::vec3 p(receivers[2 * i]), n(receivers[2 * i + 1]);
         const glm::vec2 u(receivers[2 * i + 1].w, receivers[2 * i].w);
         float probability = 0;
-        const uint32_t picked = tables.pickEmitter(p, n, u.y, probability);
+        const uint32_t picked = i % 2 == 0 ? tables.pickEmitter(p, n, u.y, probability)
+                                           : tables.pickNearEmitter(tables.pointView(p, n), u.y, probability);
         if (picked != std::bit_cast<uint32_t>(found[i].x)) { // u on the border between two
             ++unlike;
             continue;
