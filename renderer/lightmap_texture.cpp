@@ -9,8 +9,6 @@
 namespace relume {
 namespace {
 
-constexpr float kCovered = 0.75f; // coverage: above it a patch, below filled or empty
-
 struct Range {
     glm::dvec3 sum{0.0}; // of covered texels
     double count = 0;
@@ -30,7 +28,7 @@ bool isFilled(const std::vector<glm::vec4>& texels, int64_t size) {
     // This goes along rows, then along columns of the patches so widened.
     std::vector<uint8_t> wide(texels.size(), 0);
     for (int64_t i = 0; i < size * size; ++i) {
-        if (texels[static_cast<size_t>(i)].a < kCovered) continue;
+        if (texels[static_cast<size_t>(i)].a < kCoveredTexel) continue;
         const int64_t row = i - i % size, first = std::max(i - kReach, row);
         const int64_t last = std::min(i + kReach, row + size - 1);
         std::fill(wide.begin() + first, wide.begin() + last + 1, uint8_t{1});
@@ -45,6 +43,13 @@ bool isFilled(const std::vector<glm::vec4>& texels, int64_t size) {
 }
 
 } // namespace
+
+glm::vec4 readTexel(const LightmapTexture& lightmap, glm::uvec2 texel) {
+    glm::vec4 channels(0.0f);
+    glGetTextureSubImage(lightmap.texture, 0, static_cast<GLint>(texel.x), static_cast<GLint>(texel.y), 0, 1,
+                         1, 1, GL_RGBA, GL_FLOAT, sizeof channels, &channels);
+    return channels;
+}
 
 LightmapImage::LightmapImage(const FloatImage& image, const std::string& name) {
     if (image.width != image.height || image.width == 0) {
@@ -65,7 +70,7 @@ LightmapImage::LightmapImage(const FloatImage& image, const std::string& name) {
         // Nothing may come out of empty texels, whatever the file has there.
         texels[i] = covered > 0.0f ? glm::vec4(light, covered) : glm::vec4(0.0f);
         range.largest = std::max({range.largest, texels[i].x, texels[i].y, texels[i].z});
-        if (covered < kCovered) continue;
+        if (covered < kCoveredTexel) continue;
         range.sum += light;
         range.count += 1;
     }

@@ -25,6 +25,12 @@ struct LightmapTexture {
     bool operator==(const LightmapTexture&) const = default;
 };
 
+/// Texels whose coverage is above it are patches; below it they are filled or empty.
+constexpr float kCoveredTexel = 0.75f;
+
+/// Returns the channels of one texel as they are in the texture, without `unit`. Waits for the device.
+glm::vec4 readTexel(const LightmapTexture& lightmap, glm::uvec2 texel);
+
 /// Owns a lightmap texture that is made from an image: it has 16-bit floats where they hold its values, else
 /// 32-bit ones.
 class LightmapImage {

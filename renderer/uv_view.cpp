@@ -29,6 +29,10 @@ glm::vec2 uvAt(const UvWindow& window, const glm::vec2& pixel, const glm::vec2& 
     return window.centre + uvPerPixel(window, size) * (pixel - 0.5f * size);
 }
 
+glm::vec2 pixelAt(const UvWindow& window, const glm::vec2& uv, const glm::vec2& size) {
+    return 0.5f * size + (uv - window.centre) / uvPerPixel(window, size);
+}
+
 UvWindow pan(const UvWindow& window, const glm::vec2& pixels, const glm::vec2& size) {
     UvWindow moved = window;
     moved.centre = glm::clamp(window.centre - uvPerPixel(window, size) * pixels, 0.0f, 1.0f);

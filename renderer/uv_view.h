@@ -16,6 +16,8 @@ struct UvWindow {
 /// Returns the uv at a pixel of a picture, counted from its upper left corner; it is outside of [0, 1] beside
 /// the texture.
 glm::vec2 uvAt(const UvWindow& window, const glm::vec2& pixel, const glm::vec2& size);
+/// Returns the pixel at which a uv is; it inverts uvAt().
+glm::vec2 pixelAt(const UvWindow& window, const glm::vec2& uv, const glm::vec2& size);
 /// Moves by pixels, as a drag does.
 UvWindow pan(const UvWindow& window, const glm::vec2& pixels, const glm::vec2& size);
 /// Scales about a pixel; a factor > 1 comes closer.

@@ -1,5 +1,6 @@
 // A level as it comes from elsewhere: without lightmap UVs and without light.
 #include "assets/gltf/gltf.h"
+#include "tests/gpu/relume_process.h"
 #include "tests/ui/file_drop.h"
 #include "tests/ui/viewer_fixture.h"
 
@@ -63,6 +64,20 @@ TEST_F(ViewerLevel, IsSeenAtOnceLitAndItsLightIsKept) {
     auto again = openSized({level});
     EXPECT_TRUE(again->says("furnished: lightmap UVs made: not in the file", 60)) << again->output();
     quit(*again);
+}
+
+// Three pages lie on one sheet in the viewer; the device that bakes is named by its number.
+TEST_F(ViewerLevel, OfSeveralPagesIsBakedOnTheDeviceThatIsNamed) {
+    const std::string level = home_.path("paged.glb");
+    const ProcessResult made =
+        runRelume({"bake", kScenes + "cornell_layers.glb", "-o", home_.path("map.exr"), "--size", "64",
+                   "--pages", "3", "--samples", "16", "--scene-out", level});
+    ASSERT_EQ(made.status, 0) << made.err;
+    auto viewer = open({"view", level, "--bake-device", "0"});
+    ASSERT_TRUE(viewer->shows("badge: converged", 240)) << viewer->output();
+    EXPECT_NE(viewer->output().find("128 x 128"), std::string::npos) << viewer->output();
+    EXPECT_GT(mean(screenshot(*viewer)), 0.02) << "it is black";
+    quit(*viewer);
 }
 
 } // namespace

@@ -106,6 +106,29 @@ TEST_F(ViewerPanels, ACameraThatIsChosenTellsTheBakeWhatItSees) {
     quit(*viewer);
 }
 
+TEST_F(ViewerPanels, AClickReadsTheErrorOfATexel) {
+    auto viewer = openConverged();
+    viewer->mark();
+    viewer->click(640, 560);
+    EXPECT_TRUE(viewer->shows("action: ")) << viewer->output();
+    EXPECT_EQ(viewer->output().find("texel: "), std::string::npos) << "light is shown, no error";
+    viewer->press("0");
+    ASSERT_TRUE(viewer->shows("map: error", 60)) << viewer->output();
+    viewer->mark();
+    viewer->click(640, 560);
+    ASSERT_TRUE(viewer->says("texel: ")) << viewer->output();
+    const std::string text = viewer->output(), told = text.substr(text.rfind("texel: "));
+    unsigned column = 0, row = 0;
+    double percent = 0;
+    ASSERT_EQ(std::sscanf(told.c_str(), "texel: %u %u: local error %lf %%", &column, &row, &percent), 3)
+        << told;
+    EXPECT_LT(column, 64u);
+    EXPECT_LT(row, 64u);
+    EXPECT_GT(percent, 0.0);
+    EXPECT_LT(percent, 50.0) << "the bake has converged";
+    quit(*viewer);
+}
+
 // A window that the monitor's scale had made larger was asked for as large again, and made larger once more.
 TEST_F(ViewerPanels, AWindowKeepsItsSizeOnADisplayOfHighDensity) {
     const VirtualDisplay dense(kWidth, kHeight);

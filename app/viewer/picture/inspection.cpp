@@ -44,6 +44,7 @@ bool Inspection::follow(const BakeStatus& status, const LightList& lights, doubl
         bake_.inspect(asked_);
     }
     const bool ballsChanged = balls_.follow();
+    readout_.follow();
     const bool changed = takeAnswers() || ballsChanged;
     if (bakes(status.phase) && picture_.pane().hasScene()) askBesideMaps(status, time);
     return changed;

@@ -6,6 +6,7 @@
 #include "app/live/live_bake.h"
 #include "app/viewer/picture/probe_balls.h"
 #include "app/viewer/picture/scene_view.h"
+#include "app/viewer/picture/texel_readout.h"
 
 namespace relume {
 
@@ -18,16 +19,19 @@ std::optional<InspectRequest> inspectionOf(const ViewState& view, const LightLis
 class Inspection {
 public:
     /// Both arguments must outlive it.
-    Inspection(LiveBake& bake, SceneView& picture) : bake_(bake), picture_(picture), balls_(bake, picture) {}
+    Inspection(LiveBake& bake, SceneView& picture)
+        : bake_(bake), picture_(picture), balls_(bake, picture), readout_(picture) {}
 
     /// Says that a scene came, which may be the former one, `kept` as it was looked at.
     void sceneCame(bool kept) {
         askedBake_ = 0;
         balls_.sceneCame(kept);
+        readout_.sceneCame();
     }
     /// Asks for what the view shows now, and takes what was answered. Returns whether the picture changed.
     bool follow(const BakeStatus& status, const LightList& lights, double time);
     ProbeBalls& balls() { return balls_; }
+    TexelReadout& readout() { return readout_; }
     /// Returns how many tiles the camera sees, once for each time that the bake was told.
     std::optional<size_t> takeSeen() { return std::exchange(seen_, std::nullopt); }
     /// Tells whether a map is the one that was asked for.
@@ -40,6 +44,7 @@ private:
     LiveBake& bake_;
     SceneView& picture_;
     ProbeBalls balls_;
+    TexelReadout readout_;
     InspectRequest asked_;
     uint64_t askedBake_ = 0; // the bake that was asked for voxels and tiles
     uint32_t askedVoxels_ = 0;

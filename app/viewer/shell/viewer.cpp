@@ -228,6 +228,8 @@ void Viewer::followBake(double time) {
     if (const std::optional<size_t> seen = inspection_.takeSeen())
         feedback_.tell("seen", fmt::format("{} tiles", *seen));
     if (const std::string told = inspection_.balls().takeTold(); !told.empty()) feedback_.tell("balls", told);
+    if (const std::string told = inspection_.readout().takeTold(); !told.empty())
+        feedback_.tell("texel", told);
     if (const std::string why = inspection_.balls().takeRemark(); !why.empty()) feedback_.note(why, true);
     feedback_.followExposure(picture_.pane().adapting());
     baking_.setBudget(desc_.budgetMs, !picture_.rests(time));
@@ -352,6 +354,7 @@ void Viewer::drawOverlay() {
         comparison_.draw();
     }
     if (picture_.state().bare || session_.early() != nullptr) return;
+    inspection_.readout().draw();
     drawBadge(progress_.badge(), furnishedLine(), picture_.area());
 }
 

@@ -119,7 +119,8 @@ void Viewer::onScroll(const WindowEvent& event) {
     feedback_.tell("action", "zoom");
 }
 
-// Selects an instance or, with Ctrl or in its own view, the patch to see from.
+// Selects an instance and the texel whose error is told or, with Ctrl or in its own view, the patch to see
+// from.
 void Viewer::onClick(const WindowEvent& event) {
     if (const std::optional<LightKey> icon = mover_.iconAt(event.at)) return lights_.select(*icon);
     ViewState& view = picture_.state();
@@ -131,8 +132,9 @@ void Viewer::onClick(const WindowEvent& event) {
         view.seenTexel = pick->texel.y * mapSize(session_) + pick->texel.x;
         view.view = seen;
         feedback_.tell("action", "see from " + std::to_string(*view.seenTexel));
-    } else if (!patch && !view.uv) {
-        lights_.selectObject(pick);
+    } else if (!patch) {
+        if (!view.uv) lights_.selectObject(pick);
+        inspection_.readout().choose(pick);
     }
     feedback_.sceneChanged();
 }

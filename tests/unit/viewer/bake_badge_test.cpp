@@ -55,6 +55,8 @@ TEST_F(Badge, SaysWhichLightsAreStale) {
 
 TEST_F(Badge, TellsErrorAndTime) {
     EXPECT_EQ(of().text, "refining, error 0.05, 2.0 s");
+    status_.progress.localError95 = 0.083;
+    EXPECT_EQ(of().text, "refining, error 0.05, local 0.083, 2.0 s");
     status_.progress.error = 1.0; // not known yet
     EXPECT_EQ(of().text, "refining, 2.0 s");
     status_.phase = Phase::Paused;
