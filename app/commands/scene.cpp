@@ -1,9 +1,11 @@
 #include "app/commands/command.h"
 
+#include "app/text/option_checks.h"
 #include "assets/base/error.h"
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
 #include "assets/generate/generate.h"
+#include "assets/generate/shapes/finer.h"
 #include "assets/gltf/gltf.h"
 
 #include <iostream>
@@ -15,6 +17,7 @@ namespace {
 struct SceneOptions {
     std::string name, output;
     bool list = false;
+    uint32_t split = 1;
 };
 
 void listScenes() {
@@ -33,7 +36,8 @@ void makeScene(const SceneOptions& options) {
         throw UsageError("scene: '" + options.output +
                          "' does not end in .glb: scenes are written as binary glTF");
     checkFileWritable(options.output, 0);
-    const Scene scene = generateScene(options.name);
+    Scene scene = generateScene(options.name);
+    splitTriangles(scene, options.split);
     saveGlb(scene, options.output);
     size_t triangles = 0;
     for (const Mesh& mesh : scene.meshes)
@@ -50,6 +54,12 @@ void addSceneCommand(CLI::App& app) {
     command->add_option("name", options->name, "The scene, see --list");
     command->add_option("-o,--output", options->output, "The file to write (.glb)");
     command->add_flag("-l,--list", options->list, "List the scenes and stop");
+    command
+        ->add_option("--split", options->split,
+                     "Split each triangle into N * N ones: a level that looks the same and is as large as "
+                     "one would like to try")
+        ->type_name("N")
+        ->check(wholeFrom(1, kMostParts));
     command->callback([options] { makeScene(*options); });
 }
 

@@ -54,6 +54,11 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
         totalCpu += phase.cpuSeconds;
     }
     seconds["total"] = total;
+    double firstRay = 0; // rays begin with those that tell which patches lie inside something
+    for (const PhaseTime& phase : s.phases) {
+        if (phase.name == "validity" || phase.name == "solver set-up") break;
+        firstRay += phase.seconds;
+    }
     cpu["total"] = totalCpu;
     const VoxelSettings voxels = resolveVoxels(s.options);
     Json json = {{"version", RELUME_VERSION},
@@ -91,6 +96,7 @@ void writeStatistics(const std::string& path, const BakeStatistics& s) {
                  {"passSeconds", p.passSeconds},
                  {"seconds", seconds},
                  {"cpuSeconds", cpu},
+                 {"secondsToFirstRay", firstRay},
                  {"bakeCpuSeconds", s.bakeCpuSeconds},
                  {"atlas", atlasJson(s.prepared)}};
     if (s.prepared.atlas.pages.count > 1) json["pages"] = s.prepared.atlas.pages.count;
