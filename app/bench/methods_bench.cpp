@@ -230,6 +230,7 @@ private:
         const ImagePair pair({map, run.method}, {*reference_, "reference"});
         const Metrics metrics = pair.measure();
         run.relRmse = metrics.relRmse;
+        run.localError = pair.percentiles(pair.localErrors()).p95;
         run.flip = pair.mean(pair.flipDifferences(kFlipPixelsPerDegree));
         if (run.size != pictureSize_ || metrics.meanB <= 0) return;
         Difference difference{report_.runs.size(), metrics.relRmse, pair.width(), pair.differences(),

@@ -17,7 +17,8 @@ namespace {
 constexpr std::array<const char*, 7> kMethods = {"pure",     "static",      "montecarlo", "mipmapped",
                                                  "adaptive", "directional", "hybrid"};
 
-constexpr const char* kTableRow = "{:<12} {:<16} {:>5} {:>10} {:>10} {:>10} {:>10} {:>9} {:>9} {:>9}\n";
+constexpr const char* kTableRow =
+    "{:<12} {:<16} {:>5} {:>10} {:>10} {:>10} {:>10} {:>9} {:>9} {:>11} {:>9}\n";
 
 int colourOf(const std::string& method) {
     const auto found = std::find(kMethods.begin(), kMethods.end(), method);
@@ -140,28 +141,29 @@ std::string figure(const PlotDesc& desc) {
 
 std::string tableOf(const MethodsReport& report, uint32_t size) {
     std::string html = fmt::format("<h3>{}² texels</h3>\n<div class=\"wide\"><table>\n<thead><tr>", size);
-    for (const char* head :
-         {"method", "setting", "patches", "pass", "solver", "total", "rays", "DFPR", "relRMSE", "FLIP"})
+    for (const char* head : {"method", "setting", "patches", "pass", "solver", "total", "rays", "DFPR",
+                             "relRMSE", "local error", "FLIP"})
         html += fmt::format("<th scope=\"col\">{}</th>", head);
     html += "</tr></thead>\n<tbody>\n";
     for (const MethodRun& run : report.runs) {
         if (run.size != size) continue;
         html += "<tr><th scope=\"row\">" + escapeMarkup(run.method) + "</th><td>" +
                 escapeMarkup(run.setting) + "</td>";
-        const std::array<std::string, 8> cells = {run.patches > 0 ? std::to_string(run.patches) : "–",
+        const std::array<std::string, 9> cells = {run.patches > 0 ? std::to_string(run.patches) : "–",
                                                   secondsText(run.passSeconds),
                                                   secondsText(run.solveSeconds),
                                                   secondsText(run.totalSeconds),
                                                   raysText(run.rays),
                                                   plainText(run.dfpr),
                                                   percentText(run.relRmse),
+                                                  percentText(run.localError),
                                                   plainText(run.flip)};
         for (const std::string& cell : cells)
             html += "<td>" + cell + "</td>";
         html += "</tr>\n";
         if (!run.note.empty())
             html +=
-                "<tr class=\"note\"><td></td><td colspan=\"9\">" + escapeMarkup(run.note) + "</td></tr>\n";
+                "<tr class=\"note\"><td></td><td colspan=\"10\">" + escapeMarkup(run.note) + "</td></tr>\n";
     }
     return html + "</tbody>\n</table></div>\n";
 }
@@ -262,7 +264,9 @@ std::string methodsHtml(const MethodsReport& report) {
     html +=
         "</div>\n<h2>Figures</h2>\n<p>Pass: solver time per bounce. Total: from the rasterization of the "
         "lightmap to the finished map, without start-up and loading. DFPR: against pure with as many passes. "
-        "relRMSE and FLIP: against the reference.</p>\n";
+        "relRMSE, local error and FLIP: against the reference. Local error: of each texel relative to its "
+        "own "
+        "light, the 95th percentile.</p>\n";
     for (uint32_t size : sizesOf(report))
         html += tableOf(report, size);
     if (report.runs.empty()) html += "<p>Nothing was measured.</p>\n";
@@ -286,6 +290,7 @@ nlohmann::ordered_json methodsJson(const MethodsReport& report) {
                      {"rays", run.rays ? Json(*run.rays) : Json(nullptr)},
                      {"DFPR", number(run.dfpr)},
                      {"relRMSE", number(run.relRmse)},
+                     {"localError", number(run.localError)},
                      {"FLIP", number(run.flip)}};
         if (!run.note.empty()) json["note"] = run.note;
         runs.push_back(std::move(json));
@@ -297,7 +302,7 @@ nlohmann::ordered_json methodsJson(const MethodsReport& report) {
 
 std::string methodsTableHead() {
     return fmt::format(fmt::runtime(kTableRow), "method", "setting", "size", "pass", "solver", "total",
-                       "rays", "DFPR", "relRMSE", "FLIP");
+                       "rays", "DFPR", "relRMSE", "local error", "FLIP");
 }
 
 std::string methodsTableRow(const MethodRun& run) {
@@ -306,7 +311,7 @@ std::string methodsTableRow(const MethodRun& run) {
     return fmt::format(fmt::runtime(kTableRow), run.method, run.setting, run.size,
                        secondsText(run.passSeconds), secondsText(run.solveSeconds),
                        secondsText(run.totalSeconds), raysText(run.rays), plainText(run.dfpr),
-                       percentText(run.relRmse), plainText(run.flip));
+                       percentText(run.relRmse), percentText(run.localError), plainText(run.flip));
 }
 
 } // namespace relume

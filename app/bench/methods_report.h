@@ -19,12 +19,13 @@ struct MethodRun {
     std::optional<double>
         totalSeconds; // and everything from the lightmap's rasterization to the finished map
     std::optional<uint64_t> rays;
-    std::optional<double> dfpr;    // against pure with as many bounces
-    std::optional<double> relRmse; // against the reference
-    std::optional<double> flip;    // against the reference
-    std::string note;              // why there are no figures, or fewer
-    std::string picture;           // bytes of a PNG; empty: none
-    std::string difference;        // the same: heat map of the difference from the reference
+    std::optional<double> dfpr;       // against pure with as many bounces
+    std::optional<double> relRmse;    // against the reference
+    std::optional<double> localError; // likewise, the 95th percentile (assets/images/metrics.h)
+    std::optional<double> flip;       // against the reference
+    std::string note;                 // why there are no figures, or fewer
+    std::string picture;              // bytes of a PNG; empty: none
+    std::string difference;           // the same: heat map of the difference from the reference
 };
 
 struct MethodsReport {

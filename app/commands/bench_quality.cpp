@@ -102,10 +102,10 @@ void addBenchQualityCommand(CLI::App& bench) {
     command->add_option("--size", b.size, "Lightmap edge in texels")
         ->capture_default_str()
         ->check(wholeFrom(8, Baker::kMaxSize));
-    command->add_option("--modes", b.modes, "Bakes that are measured: plain, layers, per-chunk")
+    command->add_option("--modes", b.modes, "Bakes that are measured: plain, layers, per-chunk, uniform")
         ->delimiter(',')
         ->capture_default_str()
-        ->check(oneOf({"plain", "layers", "per-chunk"}));
+        ->check(oneOf({"plain", "layers", "per-chunk", "uniform"}));
     command->add_option("--error", b.error, "At which a bake ends, relRMSE as it is told")
         ->capture_default_str()
         ->check(numberFrom(1e-6, 1.0));

@@ -24,8 +24,9 @@ std::string describe(Method method, const PairSettings& settings) {
 }
 
 std::string describe(const LinkSettings& settings) {
-    const auto& [directions, rotation, samples, smooth, indirectScale, footprint, allOver, perChunk] =
-        settings;
+    const auto& [directions, rotation, samples, smooth, indirectScale, footprint, allOver, perChunk,
+                 uniform] = settings;
+    (void)uniform; // only benches bake so, which write no lightmap
     return fmt::format(
         " samples={} indirect-scale={} smooth={} footprint={} points={} per-chunk={} directions={} rotate={}",
         samples, indirectScale, smooth ? 1 : 0, footprint ? 1 : 0, allOver ? "texel" : "centre",

@@ -44,7 +44,8 @@ bool samplesPerChunk(const SolverSettings& settings, bool software) {
 
 bool directApart(const SolverSettings& settings) {
     const bool wanted = settings.error > 0 || settings.localError > 0;
-    return wanted && settings.links.samples == 0 && settings.passes == 0 && settings.links.indirectScale == 1;
+    return wanted && !settings.links.uniform && settings.links.samples == 0 && settings.passes == 0 &&
+           settings.links.indirectScale == 1;
 }
 
 SpilledBytes linkSolverBytes(const SolverExtent& extent, const SolverSettings& settings) {

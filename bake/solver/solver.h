@@ -64,6 +64,9 @@ struct LinkSettings {
     bool allOver = true;
     // Chunks take samples where light is still off; else every patch takes as many.
     bool perChunk = false;
+    // Every patch takes as many samples of direct light, too, as what others take less of is measured
+    // against.
+    bool uniform = false;
 };
 
 /// The memory that bits and links may take for later bounces. Without a cache the same rays are traced again.

@@ -26,6 +26,7 @@ SolverSettings settingsOf(const QualityBenchDesc& desc, const std::string& mode)
     solver.batchMs = desc.batchMs;
     solver.layers.on = mode == "layers";
     solver.links.perChunk = mode == "per-chunk";
+    solver.links.uniform = mode == "uniform";
     return solver;
 }
 

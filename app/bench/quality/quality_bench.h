@@ -14,7 +14,7 @@ struct QualityBenchDesc {
     std::string scene; // path
     GltfChoice choice;
     uint32_t size = 256; // lightmap edge [texels]
-    std::vector<std::string> modes = {"plain", "layers", "per-chunk"};
+    std::vector<std::string> modes = {"plain", "layers", "per-chunk", "uniform"};
     double error = 0.01, localError = 0.05; // at which bakes end, as they tell them; 0: not asked for
     double seconds = 600;                   // of the solver, after which a bake is ended
     double rays = 0;                        // and so many; 0: any number

@@ -3,11 +3,13 @@
 #include "assets/gltf/gltf.h"
 #include "assets/images/float_image.h"
 #include "assets/images/image_file.h"
+#include "assets/images/layered_exr.h"
 #include "tests/gpu/bake_scene.h"
 #include "tests/gpu/relume_process.h"
 #include "tests/temporary_folder.h"
 #include "tests/text.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -339,6 +341,26 @@ TEST_F(BakeCommand, LightsBeyondTheMemoryForLayersShareOne) {
     EXPECT_TRUE(contains(list.out, " lights")) << list.out;
     const ProcessResult alone = bake({"--layer-memory", "160K", "-o", path("map.exr")});
     EXPECT_EQ(alone.status, 2);
+}
+
+TEST_F(BakeCommand, LayersTellHowGoodEachIsByItself) {
+    const std::string layers = path("layers.exr"), json = path("layers.json");
+    const ProcessResult baked = bake({"--method", "hybrid", "--error", "0.1", "--local-error", "0.5",
+                                      "--layers", "-o", layers, "--json", json});
+    ASSERT_EQ(baked.status, 0) << baked.err;
+    const auto told = nlohmann::json::parse(bytesOf(json)).at("layers");
+    const LayeredImage image = readLayeredExr(layers);
+    ASSERT_EQ(told.size(), image.layers.size());
+    double shares = 0;
+    for (size_t i = 0; i < told.size(); ++i) {
+        const auto error = told[i].at("error").get<double>();
+        EXPECT_GT(error, 0.0) << i;
+        EXPECT_LT(error, 1.0) << i;
+        EXPECT_EQ(image.layers[i].attributes.at("relume:error"), fmt::format("{:.6g}", error)) << i;
+        EXPECT_GE(told[i].at("linkSamplePasses"), 1) << i;
+        shares += told[i].at("share").get<double>();
+    }
+    EXPECT_NEAR(shares, 1.0, 1e-3);
 }
 
 TEST_F(BakeCommand, AMissingSceneIsNamed) {

@@ -44,6 +44,7 @@ TEST_F(BenchMethods, WritesItsReport) {
         EXPECT_GT(entry.at("rays"), 0);
         EXPECT_LT(entry.at("DFPR"), 0.05);
         EXPECT_LT(entry.at("relRMSE"), 0.1);
+        EXPECT_GT(entry.at("localError"), 0.0);
         EXPECT_FALSE(entry.contains("note"));
     }
     EXPECT_EQ(report.at("runs")[0].at("DFPR"), 0.0);

@@ -34,7 +34,7 @@ TEST(BenchQuality, TellsEveryFigure) {
     const auto report = nlohmann::json::parse(contentOf(json));
     const size_t pictures = report.at("pictures").size();
     EXPECT_GE(pictures, 1u);
-    ASSERT_EQ(report.at("runs").size(), 3u);
+    ASSERT_EQ(report.at("runs").size(), 4u);
     for (const auto& mode : report.at("runs")) {
         EXPECT_FALSE(mode.contains("note")) << mode.at("mode");
         ASSERT_FALSE(mode.at("points").empty());

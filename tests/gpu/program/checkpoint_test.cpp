@@ -75,6 +75,8 @@ TEST_P(ResumedSolver, GivesTheSameBytes) {
         expectSameBytes(map.planes[k], straight.lighting.planes[k], map.channels[k]);
     const SolverProgress& progress = baker->solver().progress();
     EXPECT_EQ(progress.error, straight.progress.error);
+    EXPECT_EQ(progress.localError95, straight.progress.localError95);
+    EXPECT_EQ(progress.localError99, straight.progress.localError99);
     EXPECT_EQ(progress.passes, straight.progress.passes);
     EXPECT_EQ(progress.samples, straight.progress.samples);
     EXPECT_EQ(progress.converged, straight.progress.converged);
@@ -87,6 +89,29 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         ResumedCase{"hybrid",
                     {.size = 48, .passes = 0, .error = 0.03, .method = Method::Hybrid, .smooth = true}},
+        ResumedCase{"localError",
+                    {.size = 48,
+                     .passes = 0,
+                     .error = 0.1,
+                     .localError = 0.1,
+                     .method = Method::Hybrid,
+                     .smooth = true}},
+        ResumedCase{"perChunk",
+                    {.size = 48,
+                     .passes = 0,
+                     .error = 0.1,
+                     .localError = 0.1,
+                     .perChunk = true,
+                     .method = Method::Hybrid,
+                     .smooth = true}},
+        ResumedCase{"layersLocalError",
+                    {.size = 48,
+                     .passes = 0,
+                     .error = 0.1,
+                     .localError = 0.1,
+                     .method = Method::Hybrid,
+                     .smooth = true,
+                     .layers = true}},
         ResumedCase{"layers",
                     {.size = 48,
                      .passes = 0,

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -21,6 +22,8 @@ namespace {
 
 using RankWords = std::vector<std::string>;
 
+// Rows of super-blocks and runs of chunks are dealt evenly to some of them and not to others.
+const std::vector<uint32_t> kAnyNumber = {1, 2, 3, 5};
 // mpirun gives its processes two seconds after Ctrl-C; a loaded machine takes longer.
 constexpr double kAllHaveEnded = 10.0; // [s]
 
@@ -86,7 +89,7 @@ protected:
 };
 
 TEST_F(RankBake, HybridHasTheBytesOfOneProcess) {
-    expectSameBytes({"--size", "64", "--error", "0.03"}, {1, 2, 3, 5});
+    expectSameBytes({"--size", "64", "--error", "0.03"}, kAnyNumber);
     expectSameBytes({"--size", "64", "--samples", "48"}, {2, 4});
 }
 
@@ -101,15 +104,15 @@ TEST_F(RankBake, AShareOfATownHasTheBytesOfOneProcess) {
 }
 
 TEST_F(RankBake, DirectionalHasTheBytesOfOneProcess) {
-    expectSameBytes({"--size", "64", "--method", "directional", "--samples", "64"}, {2, 3});
+    expectSameBytes({"--size", "64", "--method", "directional", "--samples", "64"}, kAnyNumber);
 }
 
 TEST_F(RankBake, MethodsOfPairsHaveTheBytesOfOneProcess) {
-    expectSameBytes({"--size", "80", "--method", "pure", "--passes", "3"}, {2, 5});
+    expectSameBytes({"--size", "72", "--method", "pure", "--passes", "3"}, kAnyNumber);
     expectSameBytes({"--size", "64", "--method", "pure", "--preset", "rtrad", "--passes", "2"}, {3});
-    expectSameBytes({"--size", "96", "--method", "adaptive", "--passes", "3"}, {2});
+    expectSameBytes({"--size", "72", "--method", "adaptive", "--passes", "3"}, kAnyNumber);
     for (const char* method : {"static", "montecarlo", "mipmapped"})
-        expectSameBytes({"--size", "96", "--method", method, "--window", "4", "--passes", "2"}, {3});
+        expectSameBytes({"--size", "72", "--method", method, "--window", "4", "--passes", "2"}, kAnyNumber);
     expectSameBytes({"--size", "24", "--method", "pure", "--passes", "2"}, {3}); // fewer rows than processes
     scene_ = "gallery.glb"; // caches have no room for all
     expectSameBytes({"--size", "64", "--method", "pure", "--passes", "2", "--cache-memory", "2M"}, {3});
@@ -166,7 +169,7 @@ TEST_F(RankBake, SamplesThatChunksTakeAloneHaveTheBytesOfOneProcess) {
 
 TEST_F(RankBake, LayersHaveTheBytesOfOneProcess) {
     scene_ = "gallery.glb"; // it has 14 lights
-    expectSameBytes({"--size", "32", "--layers", "--samples", "16"}, {2, 3});
+    expectSameBytes({"--size", "32", "--layers", "--samples", "16"}, kAnyNumber);
     expectSameBytes({"--size", "32", "--layers", "--samples", "128", "--layer-error", "0.2", "--half"}, {2});
     scene_ = "cornell_statue.glb"; // it has one, so two of three processes have none
     expectSameBytes({"--size", "32", "--layers", "--samples", "16"}, {3});
@@ -298,17 +301,24 @@ TEST_F(RankBake, CtrlCEndsAllAndNothingIsWritten) {
 
 TEST_F(RankCheckpoint, TheDeathOfAProcessEndsAllAndTheBakeGoesOn) {
     // The second process is killed as soon as there is a checkpoint.
+    const TemporaryFolder beside;
+    const std::string killed = beside.path("killed");
     std::string script = "if [ \"$OMPI_COMM_WORLD_RANK\" != 1 ]; then exec \"$@\"; fi; \"$@\" & pid=$!; "
                          "until [ -e '" +
-                         file() + "' ]; do sleep 0.02; done; kill -9 $pid; wait $pid";
+                         file() + "' ]; do sleep 0.02; done; kill -9 $pid; : > '" + killed + "'; wait $pid";
     RankWords words = {"--oversubscribe", "-np", "3", "sh", "-c", script, "sh", RELUME_BINARY};
     const RankWords arguments =
         bake("first.exr", options({"--checkpoint", file(), "--checkpoint-every", "0.05"}));
     words.insert(words.end(), arguments.begin(), arguments.end());
     const ProcessResult first = runProgram(*mpirun_, words);
     EXPECT_NE(first.status, 0) << first.err;
+    ASSERT_TRUE(std::filesystem::exists(killed)) << first.err;
+    const std::chrono::duration<double> lived =
+        std::filesystem::file_time_type::clock::now() - std::filesystem::last_write_time(killed);
+    EXPECT_LT(lived.count(), kAllHaveEnded);
+    EXPECT_LE(timesIn(first.err, "error: "), 1u) << first.err;
     EXPECT_FALSE(std::filesystem::exists(folder_.path("first.exr"))) << "it had been done before";
-    expectGoesOn({2});
+    expectGoesOn({2, 3});
 }
 
 // A process alone stops within a pass, of which each of several then does its own share.

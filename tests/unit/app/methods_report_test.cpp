@@ -22,6 +22,7 @@ MethodRun made(const std::string& method, const std::string& setting, uint32_t s
     run.rays = 1000000;
     run.dfpr = 0.01;
     run.relRmse = 0.02;
+    run.localError = 0.07;
     run.flip = 0.03;
     return run;
 }
@@ -58,9 +59,10 @@ TEST(MethodsReport, IsOneWellFormedPageWithAllFigures) {
     r.differenceScale = 0.2;
     const std::string html = methodsHtml(r);
     EXPECT_EQ(markupProblem(html), "");
-    for (const char* part : {"a device", "a driver", "relume bench methods room.glb", "window 2", "250 ms",
-                             "8 s", "2 %", "data:image/png;base64,iVBORwA=\"", "base64,YWJjZA==\"",
-                             "128² texels", "Error over time at 64²", "prefers-color-scheme: dark"})
+    for (const char* part :
+         {"a device", "a driver", "relume bench methods room.glb", "window 2", "250 ms", "8 s", "2 %", "7 %",
+          "local error", "data:image/png;base64,iVBORwA=\"", "base64,YWJjZA==\"", "128² texels",
+          "Error over time at 64²", "prefers-color-scheme: dark"})
         EXPECT_TRUE(has(html, part)) << part;
     // Nothing is loaded from elsewhere.
     for (const char* part : {"http:", "https:", "<script", "<link", "src=\"/"})
@@ -110,6 +112,8 @@ TEST(MethodsReport, GivesTheSameFiguresAsJson) {
     ASSERT_EQ(runs.size(), 3u);
     EXPECT_EQ(runs[0].at("passSeconds"), 1.0);
     EXPECT_EQ(runs[0].at("rays"), 1000000);
+    EXPECT_EQ(runs[0].at("localError"), 0.07);
+    EXPECT_TRUE(runs[2].at("localError").is_null());
     EXPECT_FALSE(runs[0].contains("note"));
     EXPECT_TRUE(runs[1].at("relRMSE").is_null());
     EXPECT_TRUE(runs[2].at("rays").is_null());
