@@ -5,7 +5,7 @@
 #include "assets/base/file_write.h"
 #include "assets/base/log.h"
 #include "assets/generate/generate.h"
-#include "assets/generate/shapes/finer.h"
+#include "assets/generate/finer.h"
 #include "assets/gltf/gltf.h"
 
 #include <iostream>

@@ -1,6 +1,6 @@
 // Scenes whose triangles are split are the same surfaces, without a crack.
 #include "assets/generate/generate.h"
-#include "assets/generate/shapes/finer.h"
+#include "assets/generate/finer.h"
 
 #include <array>
 #include <map>

@@ -1,4 +1,4 @@
-#include "assets/generate/shapes/finer.h"
+#include "assets/generate/finer.h"
 
 #include "assets/base/error.h"
 
