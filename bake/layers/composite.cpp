@@ -29,9 +29,10 @@ Variances variancesOf(const Layer& layer) {
 }
 
 // Returns the share of a layer's indirect variance that is bias of smoothing.
-double biasShareOf(const Layer& layer) {
-    const double bias = std::accumulate(layer.sketch.bias.begin(), layer.sketch.bias.end(), 0.0);
-    return layer.indirectVariance > 0.0 ? std::clamp(bias / layer.indirectVariance, 0.0, 1.0) : 0.0;
+double biasShareOf(const Layer& layer, SketchProducts& products) {
+    return layer.indirectVariance > 0.0
+               ? std::clamp(products.biasOf(layer.sketch) / layer.indirectVariance, 0.0, 1.0)
+               : 0.0;
 }
 
 // A layer's indirect error as the composite has it.
@@ -43,45 +44,68 @@ struct Weighed {
     bool sketched() const { return factor != glm::dvec3(0.0); }
 };
 
-Weighed weighedOf(const Layer& layer, double variance) {
+double sumOf(const glm::dvec3& v) {
+    return v.x + v.y + v.z;
+}
+
+Weighed weighedOf(const Layer& layer, double variance, SketchProducts& products) {
     const glm::vec3& weight = layer.source.weight;
     Weighed weighed{&layer, std::sqrt(meanSquareOf(weight) * variance)};
-    const double square = layer.sketch.square();
+    const double square = sumOf(products.of(layer.sketch, layer.sketch));
     if (square > 0.0) weighed.factor = glm::dvec3(weight) * std::sqrt(variance / square);
     return weighed;
 }
 
-double common(const ErrorSketch& sketch, const glm::dvec3& factor, const std::vector<glm::dvec3>& sum) {
-    double product = 0;
-    for (size_t k = 0; k < sketch.entries.size(); ++k)
-        product += glm::dot(factor * glm::dvec3(sketch.entries[k]), sum[k]);
-    return product;
+// Products of all pairs are kept of so many layers at most. Of more they would be made for longer than
+// summing up all sketches each time takes.
+constexpr size_t kMostPairwise = 64;
+
+// Returns what each layer's error has in common with the sum of all that have a sketch.
+std::vector<double> commonByPairs(const std::vector<Weighed>& layers, SketchProducts& products) {
+    std::vector<double> common(layers.size(), 0.0);
+    for (size_t i = 0; i < layers.size(); ++i)
+        for (size_t j = 0; j <= i; ++j) {
+            const glm::dvec3 factor = layers[i].factor * layers[j].factor;
+            if (factor == glm::dvec3(0.0)) continue;
+            const double both = sumOf(factor * products.of(layers[i].layer->sketch, layers[j].layer->sketch));
+            common[i] += both;
+            if (j != i) common[j] += both;
+        }
+    return common;
 }
 
-// Sets each layer's share of the variance of indirect light. Returns their sum. Where layers are off in
-// opposite ways a share is none, but not less.
-double shareIndirect(const std::vector<Weighed>& layers, std::vector<Composite::Share>& shares) {
+std::vector<double> commonBySum(const std::vector<Weighed>& layers) {
     std::vector<glm::dvec3> sum;
-    double alike = 0; // size of those without a sketch
     for (const Weighed& one : layers) {
-        if (!one.sketched()) {
-            alike += one.size;
-            continue;
-        }
         const std::vector<glm::vec3>& entries = one.layer->sketch.entries;
+        if (!one.sketched()) continue;
         sum.resize(std::max(sum.size(), entries.size()), glm::dvec3(0.0));
         for (size_t k = 0; k < entries.size(); ++k)
             sum[k] += one.factor * glm::dvec3(entries[k]);
     }
-    double square = 0, given = 0;
-    for (const glm::dvec3& entry : sum)
-        square += glm::dot(entry, entry);
-    const double size = std::sqrt(square), all = (size + alike) * (size + alike);
+    std::vector<double> common(layers.size(), 0.0);
     for (size_t i = 0; i < layers.size(); ++i) {
-        const Weighed& one = layers[i];
-        const double along = one.sketched()
-                                 ? (size > 0.0 ? common(one.layer->sketch, one.factor, sum) / size : 0.0)
-                                 : one.size;
+        const std::vector<glm::vec3>& entries = layers[i].layer->sketch.entries;
+        for (size_t k = 0; layers[i].sketched() && k < entries.size(); ++k)
+            common[i] += glm::dot(layers[i].factor * glm::dvec3(entries[k]), sum[k]);
+    }
+    return common;
+}
+
+// Sets each layer's share of the variance of indirect light. Returns their sum. Where layers are off in
+// opposite ways a share is none, but not less.
+double shareIndirect(const std::vector<Weighed>& layers, SketchProducts& products,
+                     std::vector<Composite::Share>& shares) {
+    const std::vector<double> common =
+        layers.size() <= kMostPairwise ? commonByPairs(layers, products) : commonBySum(layers);
+    double alike = 0; // size of those without a sketch
+    for (const Weighed& one : layers)
+        if (!one.sketched()) alike += one.size;
+    const double square = std::accumulate(common.begin(), common.end(), 0.0);
+    const double size = std::sqrt(std::max(0.0, square)), all = (size + alike) * (size + alike);
+    double given = 0;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        const double along = layers[i].sketched() ? (size > 0.0 ? common[i] / size : 0.0) : layers[i].size;
         shares[i].indirect = std::max(0.0, along) * (size + alike);
         given += shares[i].indirect;
     }
@@ -92,7 +116,9 @@ double shareIndirect(const std::vector<Weighed>& layers, std::vector<Composite::
 
 } // namespace
 
-Composite compositeOf(std::span<Layer* const> layers) {
+Composite compositeOf(std::span<Layer* const> layers, SketchProducts* kept) {
+    SketchProducts ofOne;
+    SketchProducts& products = kept != nullptr ? *kept : ofOne;
     Composite composite;
     composite.shares.resize(layers.size());
     std::vector<Weighed> indirect;
@@ -106,12 +132,12 @@ Composite compositeOf(std::span<Layer* const> layers) {
         composite.shares[i].direct = square * own.direct;
         composite.shares[i].error = weight * layer.light * layer.error;
         variance += composite.shares[i].direct;
-        indirect.push_back(weighedOf(layer, own.indirect));
+        indirect.push_back(weighedOf(layer, own.indirect, products));
         alone += square * own.indirect;
-        bias += square * own.indirect * biasShareOf(layer);
+        bias += square * own.indirect * biasShareOf(layer, products);
     }
     if (!(light > 0.0)) return composite;
-    const double together = shareIndirect(indirect, composite.shares);
+    const double together = shareIndirect(indirect, products, composite.shares);
     variance += together;
     if (alone > 0.0) composite.alike = together / alone;
     composite.bias = std::sqrt(composite.alike * bias) / light;

@@ -218,9 +218,9 @@ void CompositeReport::tell(const Layers& layers, SolverProgress& progress, bool 
     worths_.clear();
     if (!weighedAnew && wantsLocalError() && schedule_.areTogether(layers)) measure(layers);
     const CompositeLocal local{.error = local_ ? local_->p95 : 1.0, .worths = worths_};
-    schedule_.apportion(layers, weighedAnew, local_ ? &local : nullptr);
+    schedule_.apportion(layers, weighedAnew, local_ ? &local : nullptr, &products_);
     const LayerSchedule::Told told =
-        schedule_.told(layers, local_ ? std::optional(local_->p95) : std::nullopt);
+        schedule_.told(layers, local_ ? std::optional(local_->p95) : std::nullopt, &products_);
     progress.error = told.error;
     progress.converged = told.converged;
     progress.localError95 = local_ ? local_->p95 : 1.0;
@@ -237,7 +237,7 @@ void CompositeReport::measure(const Layers& layers) {
     std::vector<Layer*> shining;
     for (const std::unique_ptr<Layer>& layer : layers)
         if (layer->shines()) shining.push_back(layer.get());
-    const Composite composite = compositeOf(shining);
+    const Composite composite = compositeOf(shining, &products_);
     const double square = composite.error * composite.error - composite.iteration * composite.iteration -
                           composite.bias * composite.bias;
     const std::vector<double> bias = biasOf(shining, composite.alike);

@@ -51,6 +51,7 @@ private:
     const LayerPass& pass_;
     LayerMixer& mixer_;
     ChunkSumPass chunkSums_;
+    SketchProducts products_;
     std::optional<LocalError> local_;           // of the composite as it is now; none: not measured
     std::vector<CompositeLocal::Worth> worths_; // where it is off too far; else empty
 };

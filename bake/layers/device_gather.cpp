@@ -102,6 +102,7 @@ LevelSums DeviceGather::resolve(uint32_t lane, const Layer& layer, uint32_t link
         sums.indirect = sumsOf(std::span(kit_.back<shader::ResolveSums>(), 1));
         const auto* entries = kit_.back<glm::vec3>(kSketchAt, kSketchEntries);
         sums.sketch.entries.assign(entries, entries + kSketchEntries);
+        sums.sketch.number = newSketchNumber();
     }
     if (smooths) {
         const auto* perChunk = kit_.back<shader::ResolveSums>(kLevelSumsAt, chunks);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "assets/base/worker_pool.h"
@@ -21,10 +23,26 @@ struct ErrorSketch {
     // How far smoothing moves each chunk's light beyond what noise explains (ResolveSums::bias); empty:
     // nothing is smoothed, or it is not known.
     std::vector<float> bias;
+    uint64_t number = 0; // another one for other contents (newSketchNumber); 0: nothing is kept of it
 
     bool empty() const { return entries.empty(); }
-    /// Returns the sum of squares.
-    double square() const;
+};
+
+/// Returns a number that no sketch has had.
+uint64_t newSketchNumber();
+
+/// Finds what sketches have in common, and keeps it: weights change more often than they do, and how far any
+/// mixture of layers is off hangs on these products alone.
+class SketchProducts {
+public:
+    /// Returns the sums of the products of their entries, one for each channel.
+    glm::dvec3 of(const ErrorSketch& a, const ErrorSketch& b);
+    /// Returns the sum over all chunks of a sketch's bias.
+    double biasOf(const ErrorSketch& sketch);
+
+private:
+    std::map<std::pair<uint64_t, uint64_t>, glm::dvec3> products_; // by their numbers
+    std::map<uint64_t, double> biases_;
 };
 
 /// Makes the sketch of sums over links on the CPU, as shaders/layers/layer_sketch.comp does: patches has an

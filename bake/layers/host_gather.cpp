@@ -89,6 +89,7 @@ LevelSums HostGather::resolve(uint32_t, const Layer& layer, uint32_t linkSampleP
                             size_t{kit_.chunkCount()} * shader::kChunk);
     if (linkSamplePasses > 0)
         level.sketch = sketchOf(kit_.gatherPass.pool(), patches, buffers.linkSums.as<glm::vec4>());
+    level.sketch.number = newSketchNumber();
     if (smooths)
         std::transform(sums.indirect.begin(), sums.indirect.end(), std::back_inserter(level.sketch.bias),
                        [](const shader::ResolveSums& chunk) { return chunk.bias; });

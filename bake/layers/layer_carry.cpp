@@ -159,6 +159,7 @@ private:
         to.iterationError = from.iterationError;
         to.sketch = std::move(from.sketch);
         to.sketch.bias.clear(); // its chunks are others
+        to.sketch.number = newSketchNumber();
         to.error = from.error;
         to.redo = from.redo;
         to.redoSteps = from.redoSteps;

@@ -162,7 +162,8 @@ std::vector<LayerLevel> LayerSchedule::levelsTogether(const Standing& standing,
 
 // The composite decides on the levels of all layers at once, and anew when each has its own: then they depend
 // neither on the order in which layers are made nor on who bounces along.
-void LayerSchedule::apportion(const Layers& layers, bool weighedAnew, const CompositeLocal* local) const {
+void LayerSchedule::apportion(const Layers& layers, bool weighedAnew, const CompositeLocal* local,
+                              SketchProducts* products) const {
     bool underWay = false;
     Standing standing;
     std::vector<Layer*>& there = standing.layers;
@@ -182,7 +183,7 @@ void LayerSchedule::apportion(const Layers& layers, bool weighedAnew, const Comp
     }
     if (takesAll()) return;
     if (!underWay) {
-        standing.composite = compositeOf(there);
+        standing.composite = compositeOf(there, products);
         const std::vector<LayerLevel> together = levelsTogether(standing, local);
         for (size_t i = 0; i < there.size(); ++i)
             there[i]->plan.wanted = together[i];
@@ -375,7 +376,8 @@ bool LayerSchedule::isWhole(const Layers& layers, const ScheduleState& state) co
     });
 }
 
-LayerSchedule::Told LayerSchedule::told(const Layers& layers, std::optional<double> localError) const {
+LayerSchedule::Told LayerSchedule::told(const Layers& layers, std::optional<double> localError,
+                                        SketchProducts* products) const {
     std::vector<Layer*> shining;
     bool all = true, enough = true;
     for (const std::unique_ptr<Layer>& layer : layers) {
@@ -386,7 +388,7 @@ LayerSchedule::Told LayerSchedule::told(const Layers& layers, std::optional<doub
                  (!takesAll() || layer->plan.converged);
     }
     Told told;
-    told.error = all ? compositeOf(shining).error : 1.0;
+    told.error = all ? compositeOf(shining, products).error : 1.0;
     told.converged = all && enough && (rules_.error <= 0 || told.error <= rules_.error) &&
                      (rules_.localError <= 0 || (localError && *localError <= rules_.localError));
     return told;

@@ -73,9 +73,9 @@ public:
     /// Decides for each layer how far it is to go, by its share of the composite as it is weighed now: sets
     /// its plan. It is to be called whenever a level has changed and, as `weighedAnew`, when
     /// weights have, or which layers there are; what was decided before counts no more then.
-    /// `local` is the composite's local error, where it is known.
-    void apportion(const Layers& layers, bool weighedAnew = false,
-                   const CompositeLocal* local = nullptr) const;
+    /// `local` is the composite's local error, where it is known; `products` are as for compositeOf.
+    void apportion(const Layers& layers, bool weighedAnew = false, const CompositeLocal* local = nullptr,
+                   SketchProducts* products = nullptr) const;
     /// Tells whether each layer has the level that it was to have: how far all go is decided anew then.
     bool areTogether(const Layers& layers) const;
     /// Returns the level to be made now. One that was there before is made in the steps that it was made in.
@@ -128,7 +128,8 @@ public:
         double error = 1;
         bool converged = false;
     };
-    Told told(const Layers& layers, std::optional<double> localError = {}) const;
+    Told told(const Layers& layers, std::optional<double> localError = {},
+              SketchProducts* products = nullptr) const;
 
 private:
     Step nextLevelStep(const Layers& layers, const ScheduleState& state) const;

@@ -64,6 +64,7 @@ void takeLayerState(Layer& layer, const LayerStateSize& size, std::span<const ui
     std::memcpy(layer.sketch.entries.data(), sketch.data(), kSketchBytes);
     layer.sketch.bias.resize(from.biasKnown ? size.chunks : 0);
     if (from.biasKnown) std::memcpy(layer.sketch.bias.data(), bias.data(), biasBytes);
+    layer.sketch.number = newSketchNumber();
     layer.penumbra.assign(penumbra.begin(), penumbra.end());
     layer.directSamplePasses = from.directSamplePasses;
     layer.directSteps.clear();

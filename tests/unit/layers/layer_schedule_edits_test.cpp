@@ -393,6 +393,48 @@ TEST(ToldError, OfLinksIsWhatSketchesHaveInCommon) {
     EXPECT_NEAR(errorOf(beside).error, (std::hypot(0.2, 0.4) + 0.3) / 3.0, 1e-6);
 }
 
+// Products of sketches are kept from one mixture to the next, and made anew for another sketch.
+TEST(ToldError, IsTheSameByProductsThatAreKept) {
+    const auto sketched = [](double error, const glm::vec3& a, const glm::vec3& b) {
+        LayerFacts facts = std::move(at(2, 2).noise(0, 1).off(error).sketch({a, b}));
+        return facts;
+    };
+    LayerSchedule::Layers layers =
+        layersOf(sketched(0.2, {1, 2, 3}, {-1, 0, 2}), sketched(0.4, {0, 1, -2}, {3, 1, 0}),
+                 sketched(0.3, {2, -2, 1}, {1, 1, 1}));
+    for (const std::unique_ptr<Layer>& layer : layers)
+        layer->sketch.number = newSketchNumber();
+    const LayerSchedule schedule(offlineRules());
+    SketchProducts kept;
+    const auto expectSame = [&] {
+        EXPECT_NEAR(schedule.told(layers, {}, &kept).error, schedule.told(layers).error, 1e-12);
+    };
+    expectSame();
+    layers[1]->source.weight = {0.5f, 3.0f, 0.25f};
+    expectSame();
+    const double before = schedule.told(layers).error;
+    layers[2]->sketch.entries[0] = {-4, 5, 0};
+    layers[2]->sketch.number = newSketchNumber();
+    EXPECT_GT(std::abs(schedule.told(layers).error - before), 1e-3);
+    expectSame();
+}
+
+// Beyond some number of layers their sum is made, and no products.
+TEST(ToldError, OfManyLayersIsThatOfFew) {
+    LayerSchedule::Layers few, many;
+    const auto add = [](LayerSchedule::Layers& to, size_t count) {
+        for (size_t i = 0; i < count; ++i) {
+            const auto turn = static_cast<float>(i % 3);
+            LayerSchedule::Layers one =
+                layersOf(std::move(at(2, 2).noise(0, 1).off(0.2).sketch({{1, turn, 2}, {turn, 1, -turn}})));
+            to.push_back(std::move(one.front()));
+        }
+    };
+    add(few, 60);
+    add(many, 120);
+    EXPECT_NEAR(errorOf(many).error, errorOf(few).error, 1e-9) << "both have each as often";
+}
+
 TEST(ToldError, OfBouncesAddsUp) {
     EXPECT_NEAR(errorOf(layersOf(at(2, 2).off(0.02, 0.02), at(2, 2).off(0.04, 0.04))).error, 0.03, 1e-12);
 }
