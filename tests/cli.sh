@@ -171,6 +171,7 @@ expectStatus 0 samples 16
 
 expectUsageError bake room.glb -o room.exr --scene-out scene.gltf # written as binary glTF
 expectUsageError scene cornell_small -o scene.gltf
+expectUsageError scene cornell_small -o scene.glb --split 0
 expectUsageError unwrap room.glb -o scene.gltf
 expectUsageError import room.obj -o scene.gltf
 expectRefusal "error: --up: 'w' is not allowed: choose x, y or z" import room.obj -o out.glb --up w

@@ -265,8 +265,7 @@ std::string methodsHtml(const MethodsReport& report) {
         "</div>\n<h2>Figures</h2>\n<p>Pass: solver time per bounce. Total: from the rasterization of the "
         "lightmap to the finished map, without start-up and loading. DFPR: against pure with as many passes. "
         "relRMSE, local error and FLIP: against the reference. Local error: of each texel relative to its "
-        "own "
-        "light, the 95th percentile.</p>\n";
+        "own light, the 95th percentile.</p>\n";
     for (uint32_t size : sizesOf(report))
         html += tableOf(report, size);
     if (report.runs.empty()) html += "<p>Nothing was measured.</p>\n";

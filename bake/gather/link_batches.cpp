@@ -87,8 +87,11 @@ void LinkBatches::finish(uint32_t samplePass, const Portion& portion) {
 void LinkBatches::run(std::span<const Portion> portions, const Steps& steps, bool atOnce) {
     ASSERT(!portions.empty());
     const auto start = Clock::now();
-    double beside = 0; // [s] that went by without the device
-    atOnce ? runAtOnce(portions, steps) : runBySubmit(portions, steps, beside);
+    double beside = 0; // [s]
+    if (atOnce)
+        runAtOnce(portions, steps);
+    else
+        beside = runBySubmit(portions, steps);
     double chunks = 0;
     for (const Portion& portion : portions)
         chunks += double(portion.range.count) * portion.samplePasses;
@@ -116,7 +119,7 @@ void LinkBatches::runAtOnce(std::span<const Portion> portions, const Steps& step
     kit_.run(cmd);
 }
 
-void LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& steps, double& beside) {
+double LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& steps) {
     vk::Timestamps& timestamps = kit_.timestamps;
     VkCommandBuffer cmd = kit_.commands.begin();
     record(steps.begin, cmd);
@@ -142,10 +145,10 @@ void LinkBatches::runBySubmit(std::span<const Portion> portions, const Steps& st
         steps.meanwhile();
         meanwhile = secondsSince(begun);
     });
-    beside = std::max(meanwhile - 1e-3 * timestamps.milliseconds(0, 2), 0.0);
     kit_.progress.traceSeconds +=
         kit_.input.tracer.onCpu() && portions.front().trace ? cpuTrace : 1e-3 * timestamps.milliseconds(0, 1);
     kit_.progress.gatherSeconds += 1e-3 * timestamps.milliseconds(1, 2);
+    return std::max(meanwhile - 1e-3 * timestamps.milliseconds(0, 2), 0.0);
 }
 
 } // namespace relume

@@ -75,7 +75,8 @@ private:
                             ChunkRange range) const;
     void trace(std::span<const Portion> portions, VkCommandBuffer cmd) const;
     void runAtOnce(std::span<const Portion> portions, const Steps& steps);
-    void runBySubmit(std::span<const Portion> portions, const Steps& steps, double& beside);
+    /// Returns the time that steps.meanwhile took beyond the device's [s], which is none of the batch's.
+    double runBySubmit(std::span<const Portion> portions, const Steps& steps);
 
     LinkKit& kit_;
     LinkCache cache_;

@@ -37,7 +37,7 @@ struct CompositeLocal {
 /// Direct light's errors are independent from layer to layer. Indirect light's go together as their sketches
 /// tell, for layers see through the same links; those of a layer without a sketch count as if they had the
 /// others' sign everywhere. What later bounces bring is light, and adds up.
-/// What sketches have in common is kept in `products`, where there are such.
+/// It keeps in `products`, where there are such, what sketches have in common.
 Composite compositeOf(std::span<Layer* const> layers, SketchProducts* products = nullptr);
 
 } // namespace relume

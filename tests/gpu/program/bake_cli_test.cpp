@@ -220,6 +220,10 @@ TEST_F(BakeCommand, StatisticsNameEverything) {
         ASSERT_TRUE(json["seconds"].contains(phase)) << phase;
         EXPECT_GT(json["seconds"][phase], 0.0) << phase;
     }
+    double first = 0; // ray: whatever comes before is set up
+    for (const char* phase : {"start", "load", "unwrap", "atlas", "device", "cit", "patches", "tracer"})
+        first += json["seconds"].value(phase, 0.0);
+    EXPECT_NEAR(json["secondsToFirstRay"], first, 1e-9);
     for (const char* kind :
          {"seconds", "cpuSeconds"}) { // with what is in no part, they are the whole process
         double sum = 0;
