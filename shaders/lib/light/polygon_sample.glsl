@@ -12,9 +12,10 @@
 // counts as even: f differs by a factor of 4.3 at most over it because of the distance, and by .2 of its mean
 // as a rule.
 CONST float kEvenReach = 0.35f;
-// There are at most so many halvings: from a hundredth of the polygon's size away on it is cut until it is
-// even.
-CONST uint kMostHalvings = 16u;
+// There are at most so many halvings: from a hundred-thousandth of the polygon's size away on it is cut until
+// it is even. Rays start all over their texels, so where a texel ends at the polygon some start as close as
+// one likes, and what is not even there has no bound on its variance.
+CONST uint kMostHalvings = 36u;
 // No half that may light the receiver is taken less often: rounding could have made nothing of its form
 // factor.
 CONST float kLeastHalf = 0.001f;

@@ -153,4 +153,31 @@ TEST_P(NearLights, ManyPolygonsLightTexelsByTheirMean) {
     }
 }
 
+// A panel stands upon the floor: rays start as close to it as one likes, and what is closest decides what
+// little is known of the others where points near it are not picked as often as they shine.
+TEST(NearLights, APanelThatTouchesTheFloorIsNoNoisierThanAnother) {
+    SceneMaker maker(32);
+    const TexelRect rect = maker.quad({0, -1, 0}, kX, 2.0f * kY, maker.material(0.0f), glm::uvec2(8, 16));
+    Scene scene = maker.scene();
+    Light panel;
+    panel.type = LightType::Rectangle;
+    panel.intensity = 10.0f;
+    panel.size = {4.0f, 2.0f};
+    // It shines along its -Z, which is X here; its lower edge is the Y axis.
+    panel.transform =
+        glm::mat4(glm::vec4(-kY, 0), glm::vec4(kZ, 0), glm::vec4(-kX, 0), glm::vec4(0, 0, 1, 1));
+    scene.lights = {panel};
+    const auto bake = [&](uint32_t samples) {
+        return bakeScene(scene,
+                         {.size = maker.size(), .passes = 1, .method = Method::Hybrid, .samples = samples})
+            .lighting;
+    };
+    const FloatImage few = bake(64), many = bake(16384);
+    for (uint32_t row = 2; row < 14; ++row) {
+        const double wanted = texel(many, rect, 0, row);
+        EXPECT_GT(wanted, 4.0) << "about half of what a panel overhead would bring";
+        EXPECT_NEAR(texel(few, rect, 0, row) / wanted, 1.0, 0.12) << row;
+    }
+}
+
 } // namespace relume
