@@ -153,6 +153,7 @@ struct ChangePush {
     ADDRESS ligOut;
     ADDRESS sums; // vec4[chunkCount]
     uint chunkCount;
+    uint isFirst; // 1: it is the first bounce
 };
 // Sums over a chunk's patches: light and variances of the mean, R, G and B together.
 struct ResolveSums {

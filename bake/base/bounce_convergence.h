@@ -12,6 +12,13 @@ constexpr double kLeastIterationError = 1e-4;
 /// share.
 constexpr double kKeptIterationShare = 0.02;
 
+/// Of each patch's own light they may leave such a share, on the mean over all patches: of a level in the sun
+/// hardly anything of the mean light lies in its rooms, where most of the light is that of later bounces.
+constexpr double kLocalIterationAim = 0.002;
+/// Layers may leave more: most of their light's own light counts for little beside that of all others, and
+/// they gather over all links each time.
+constexpr double kLocalIterationAimOfLayers = 0.005;
+
 /// Returns what bounces over such links may leave where this error is asked for, 0: none.
 inline double keptIterationAim(double error) {
     return std::max(kKeptIterationShare * error, kLeastIterationError);

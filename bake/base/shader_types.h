@@ -27,6 +27,7 @@ using glm::uint;
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/units.glsl"
 #include "shaders/lib/packed_light.glsl"
+#include "shaders/lib/relative_change.glsl"
 #include "shaders/lib/seams.glsl"
 #include "shaders/lib/local_error.glsl"
 #include "shaders/lib/sketch.glsl"

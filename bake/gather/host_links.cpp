@@ -69,8 +69,8 @@ void sendChunk(const HostSend& work, uint32_t chunk) {
                   : glm::vec4(0.0f);
         if (!work.changes || !shader::patchIsShown(flags)) continue;
         const glm::vec3 before(work.before[index]), by = light - before;
-        change +=
-            glm::vec4(glm::dot(by, by), light.r + light.g + light.b, 1.0f, before.r + before.g + before.b);
+        const float last = work.isFirst ? before.r + before.g + before.b : shader::relativeChange(light, by);
+        change += glm::vec4(glm::dot(by, by), light.r + light.g + light.b, 1.0f, last);
     }
     if (work.changes) work.changes[chunk] = change;
 }

@@ -35,6 +35,7 @@ struct HostSend {
     const glm::vec4* light = nullptr;  // light that came of it
     glm::vec4* radiance = nullptr;     // written: reflectivity * albedo * light, of those that send
     glm::vec4* changes = nullptr;      // per chunk, as in ChangePush; nullptr: not told
+    bool isFirst = false;              // of changes: it is the first bounce
     const uint8_t* full = nullptr;     // per chunk, not 0: all of its patches send and are shown
     float reflectivity = 1;
     uint32_t chunkCount = 0;

@@ -160,13 +160,14 @@ void LinkGatherPass::gatherOnCpu(const LightBuffers& light, const LinkBuffers& b
 }
 
 void LinkGatherPass::sendOnCpu(const LightBuffers& light, float reflectivity,
-                               const std::vector<uint8_t>& full, glm::vec4* changes) const {
+                               const std::vector<uint8_t>& full, glm::vec4* changes, bool isFirst) const {
     sendLight(*pool_, {.patches = light.patches.as<shader::Patch>(),
                        .albedo = light.albedo.as<glm::vec4>(),
                        .before = light.ligIn.as<glm::vec4>(),
                        .light = light.ligOut.as<glm::vec4>(),
                        .radiance = light.radiance.as<glm::vec4>(),
                        .changes = changes,
+                       .isFirst = isFirst,
                        .full = full.data(),
                        .reflectivity = reflectivity,
                        .chunkCount = light.chunkCount});
@@ -294,14 +295,15 @@ void LinkGatherPass::recordDirectMean(VkCommandBuffer cmd, const LightBuffers& l
 }
 
 void ResolvePass::recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                               const SomeChunks& chunks) const {
+                               const SomeChunks& chunks, bool isFirst) const {
     forRuns(chunks, light.chunkCount, [&](const ChunkRange& run) {
         const uint64_t first = uint64_t{run.first} * kChunk;
         const shader::ChangePush push{.patches = light.patches.address() + first * sizeof(shader::Patch),
                                       .ligIn = light.ligIn.address() + first * sizeof(glm::vec4),
                                       .ligOut = light.ligOut.address() + first * sizeof(glm::vec4),
                                       .sums = buffers.chunkSums.address() + run.first * sizeof(glm::vec4),
-                                      .chunkCount = run.count};
+                                      .chunkCount = run.count,
+                                      .isFirst = isFirst ? 1u : 0u};
         dispatchChunks(change_, cmd, push, run.count);
     });
 }

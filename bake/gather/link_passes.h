@@ -103,7 +103,7 @@ public:
     /// Makes radiance, without emission, after a bounce from ligIn to ligOut that the host gathered. full and
     /// changes are as HostSend has them.
     void sendOnCpu(const LightBuffers& light, float reflectivity, const std::vector<uint8_t>& full,
-                   glm::vec4* changes) const;
+                   glm::vec4* changes, bool isFirst = false) const;
     /// Begins on the host, before any bounce: makes ligIn that of `first`, and radiance from it.
     void startOnCpu(const LightBuffers& light, float reflectivity, const std::vector<uint8_t>& full,
                     const vk::Buffer& first) const;
@@ -146,9 +146,9 @@ public:
         : change_(device, "change"), coarse_(device, "coarse_error"),
           smooth_(resolves ? vk::ComputeProgram(device, "smooth") : vk::ComputeProgram()),
           resolve_(resolves ? vk::ComputeProgram(device, "resolve") : vk::ComputeProgram()) {}
-    /// Compares ligOut with ligIn: makes a vec4 per chunk in chunkSums.
+    /// Compares ligOut with ligIn: makes a vec4 per chunk in chunkSums, as ChangePush has it.
     void recordChange(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,
-                      const SomeChunks& chunks = {}) const;
+                      const SomeChunks& chunks = {}, bool isFirst = false) const;
     /// Compares receivers of a coarser grid with their neighbours: makes a vec4 per chunk of theirs in
     /// chunkSums. samples is the number of links per receiver in linkSums.
     void recordCoarse(VkCommandBuffer cmd, const LightBuffers& light, const LinkBuffers& buffers,

@@ -288,8 +288,9 @@ std::vector<uint32_t> BounceJob::look() {
             learnChanges(i, lane.look - lane.looked > 1);
             lane.looked = lane.look;
             const uint32_t left = kMostPasses - std::min(bounce_, kMostPasses - 1);
-            lane.look += lane.series.bouncesTo(iterationAim(), std::min(kMostUnseen, left));
-            lane.live = lane.series.error > iterationAim() && bounce_ < kMostPasses;
+            lane.look +=
+                lane.series.bouncesTo(iterationAim(), localIterationAim(), std::min(kMostUnseen, left));
+            lane.live = !hasConverged(lane) && bounce_ < kMostPasses;
         }
         if (lane.live) live |= 1u << i;
     }
@@ -314,7 +315,7 @@ std::vector<uint32_t> BounceJob::lookAtGather() {
         Lane& lane = desc_.lanes[i];
         if (!lane.live) continue;
         if (told) learnChanges(i, gathers_ == 2);
-        lane.live = told && lane.series.error > iterationAim() && gathers_ + 1 < kMostPasses;
+        lane.live = told && !hasConverged(lane) && gathers_ + 1 < kMostPasses;
         if (lane.live)
             live |= 1u << i;
         else
@@ -334,12 +335,21 @@ double BounceJob::iterationAim() const {
     return desc_.hasty ? std::max(aim, kFirstIterationError) : aim;
 }
 
+// A first look does not wait for dark corners.
+double BounceJob::localIterationAim() const {
+    return desc_.hasty ? 1.0 : kLocalIterationAimOfLayers;
+}
+
+bool BounceJob::hasConverged(const Lane& lane) const {
+    return lane.series.isWithin(iterationAim(), localIterationAim());
+}
+
 // Learns what the last pass changed; `both` says that what the pass before changed has not been seen yet.
 void BounceJob::learnChanges(uint32_t lane, bool both) {
     const uint32_t passes = stage_ == Stage::Gather ? gathers_ : bounce_; // this one, too
     BounceSeries& series = desc_.lanes[lane].series;
     if (both) {
-        series.change = 0; // of another stage, or of a pass long before
+        series.forgetChange(); // of another stage, or of a pass long before
         series.learn(tools_->gather.change((passes - 2) % 2, lane));
     }
     series.learn(tools_->gather.change((passes - 1) % 2, lane));

@@ -76,6 +76,8 @@ private:
     std::vector<uint32_t> lookAtGather();
     void learnChanges(uint32_t lane, bool both);
     double iterationAim() const;
+    double localIterationAim() const;
+    bool hasConverged(const Lane& lane) const;
     bool wantsDistances() const;
     uint32_t linkSamplePasses() const { return desc_.lanes.front().target.linkSamplePasses; }
 

@@ -145,16 +145,16 @@ double LinkErrors::coarseVariance(const LinkState& state, double patches) const 
     return patches * (half ? kGapShare2 : kGapShare4) * (rows + columns);
 }
 
-glm::dvec4 LinkErrors::change() const {
+glm::dvec4 LinkErrors::change(bool isFirst) const {
     VkCommandBuffer cmd = kit_.commands.begin();
-    pass_.recordChange(cmd, kit_.input.light, kit_.buffers, kit_.rankChunks.own());
+    pass_.recordChange(cmd, kit_.input.light, kit_.buffers, kit_.rankChunks.own(), isFirst);
     kit_.run(cmd);
     return sumsOf(chunkSums<glm::vec4>());
 }
 
-glm::dvec4 LinkErrors::sendOnHost(const std::vector<uint8_t>& full) const {
+glm::dvec4 LinkErrors::sendOnHost(const std::vector<uint8_t>& full, bool isFirst) const {
     kit_.gatherPass.sendOnCpu(kit_.input.light, kit_.settings.transport.reflectivity, full,
-                              kit_.buffers.chunkSums.as<glm::vec4>());
+                              kit_.buffers.chunkSums.as<glm::vec4>(), isFirst);
     return sumsOf(chunkSums<glm::vec4>());
 }
 

@@ -31,9 +31,9 @@ public:
     double coarseVariance(const LinkState& state, double patches) const;
     /// Compares the light of a bounce with the one before. Returns the sums over all patches as ChangePush
     /// has them.
-    glm::dvec4 change() const;
+    glm::dvec4 change(bool isFirst) const;
     /// Does so on the CPU, and makes what patches send of the light that came; full is as HostSend has it.
-    glm::dvec4 sendOnHost(const std::vector<uint8_t>& full) const;
+    glm::dvec4 sendOnHost(const std::vector<uint8_t>& full, bool isFirst) const;
 
 private:
     void resolveOnHost(const LinkState& state, double sigma) const;

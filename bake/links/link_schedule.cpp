@@ -147,7 +147,8 @@ bool LinkSchedule::isLastBounce(const LinkState& state) const {
 
 bool LinkSchedule::hasConverged(const LinkState& state) const {
     const double asked = rules_.error > 0 ? rules_.error : rules_.localError;
-    return state.series.error <= keptIterationAim(asked) || state.bounce + 1 >= kMostBounces;
+    return state.series.isWithin(keptIterationAim(asked), kLocalIterationAim) ||
+           state.bounce + 1 >= kMostBounces;
 }
 
 } // namespace relume

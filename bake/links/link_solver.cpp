@@ -460,9 +460,11 @@ void LinkSolver::endBounce() {
     ++progress_.passes;
     const bool converges = schedule_.converges(state_);
     if (converges) {
-        const glm::dvec4 total = sendsOnHost_ ? errors_.sendOnHost(senders_.full()) : errors_.change();
-        const double mean = state_.series.learn(total);
-        if (state_.bounce == 0) state_.convergence.add(total.w / std::max(1.0, 3.0 * total.z));
+        const bool isFirst = state_.bounce == 0;
+        const glm::dvec4 total =
+            sendsOnHost_ ? errors_.sendOnHost(senders_.full(), isFirst) : errors_.change(isFirst);
+        const double mean = state_.series.learn(total, isFirst);
+        if (isFirst) state_.convergence.add(total.w / std::max(1.0, 3.0 * total.z));
         state_.convergence.add(mean);
     }
     if (state_.last) carry();

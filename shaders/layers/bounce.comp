@@ -7,6 +7,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
 #include "lib/packed_light.glsl"
+#include "lib/relative_change.glsl"
 layout(push_constant, scalar) uniform Push { BouncePush push; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Lanes { BounceLane items[]; };
 
@@ -55,7 +56,7 @@ void send(vec3 light) {
     if (push.changes != 0ul) {
         vec3 before = VEC4_AT(lightNow(), index).rgb, change = light - before;
         float weight = patchIsShown(flags) ? 1.0 : 0.0;
-        terms[l][i] = weight * vec4(dot(change, change), light.r + light.g + light.b, 1.0, before.r + before.g + before.b);
+        terms[l][i] = weight * vec4(dot(change, change), light.r + light.g + light.b, 1.0, relativeChange(light, change));
     }
     if (push.samplePasses > 0u && has(push.live)) VEC4_AT(lightNext(), index) = vec4(light, 1.0);
     UVEC2_AT(push.sent, index * LANES + l) = packLight(sends ? push.reflectivity * albedo * light : vec3(0.0));

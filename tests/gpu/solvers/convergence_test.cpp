@@ -6,7 +6,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 namespace relume {
 namespace {
@@ -24,6 +26,64 @@ double leastFall(double times) {
 }
 
 class Convergence : public testing::TestWithParam<std::string> {};
+
+/// Adds the wall with edges u and v around a hole from `low` to `high` [m].
+void wallWithHole(SceneMaker& maker, glm::vec3 corner, glm::vec3 u, glm::vec3 v, glm::vec2 low,
+                  glm::vec2 high, int material) {
+    const glm::vec3 x = glm::normalize(u), y = glm::normalize(v);
+    const auto part = [&](float x0, float x1, float y0, float y1) {
+        if (x1 > x0 && y1 > y0)
+            maker.quad(corner + x0 * x + y0 * y, (x1 - x0) * x, (y1 - y0) * y, material, {10, 10});
+    };
+    part(0, low.x, 0, glm::length(v));
+    part(high.x, glm::length(u), 0, glm::length(v));
+    part(low.x, high.x, 0, low.y);
+    part(low.x, high.x, high.y, glm::length(v));
+}
+
+/// A room with a weak lamp, another that has a door to it, and a bright square outside.
+struct Flat {
+    SceneMaker maker{96};
+    std::vector<TexelRect> inner; // of the room behind
+
+    Flat() {
+        const int grey = maker.material(0.6f);
+        maker.quad({20, -20, 0}, 40.0f * kX, 40.0f * kY, grey, {40, 40});
+        const auto room = [&](float x, std::vector<TexelRect>* rects) { // but for the walls along y
+            const std::array<std::array<glm::vec3, 3>, 4> walls = {
+                {{glm::vec3(x, 0, 0), 4.0f * kX, 3.0f * kY},
+                 {glm::vec3(x, 0, 3), 3.0f * kY, 4.0f * kX},
+                 {glm::vec3(x, 0, 0), 3.0f * kZ, 4.0f * kX},
+                 {glm::vec3(x, 3, 0), 4.0f * kX, 3.0f * kZ}}};
+            for (const auto& [corner, u, v] : walls) {
+                const TexelRect rect = maker.quad(corner, u, v, grey, {14, 14});
+                if (rects) rects->push_back(rect);
+            }
+        };
+        room(0, nullptr);
+        room(-4, &inner);
+        maker.quad({4, 0, 0}, 3.0f * kZ, 3.0f * kY, grey, {14, 14});
+        wallWithHole(maker, {0, 0, 0}, 3.0f * kY, 3.0f * kZ, {1, 0}, {2, 2}, grey);
+        wallWithHole(maker, {0, 0, 0}, 3.0f * kZ, 3.0f * kY, {0, 1}, {2, 2}, grey);
+        inner.push_back(maker.quad({-4, 0, 0}, 3.0f * kY, 3.0f * kZ, grey, {14, 14}));
+    }
+    Scene scene() const {
+        Scene scene = maker.scene();
+        scene.sky.radiance = glm::vec3(1000.0f);
+        Light lamp; // it shines down
+        lamp.type = LightType::Rectangle;
+        lamp.intensity = 1.0f;
+        lamp.transform[3] = glm::vec4(2.0f, 1.5f, 2.9f, 1.0f);
+        scene.lights = {lamp};
+        return scene;
+    }
+    double light(const Baked& baked) const {
+        double sum = 0;
+        for (const TexelRect& rect : inner)
+            sum += statistics(baked.lighting, rect).mean / double(inner.size());
+        return sum;
+    }
+};
 
 } // namespace
 
@@ -50,6 +110,21 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Convergence, testing::ValuesIn([] {
                              return names;
                          }()),
                          [](const auto& test) { return test.param; });
+
+// Next to nothing of a level's mean light lies in a room that the sun does not reach, and nearly all that is
+// there has come by bounces: bounces that end when the mean light tells no more leave it too dark.
+TEST(Convergence, RoomsOfABrightLevelHaveAllTheirBounces) {
+    const Flat flat;
+    BakeDesc desc = hybrid(flat.maker.size(), 4096);
+    const double wanted = flat.light(bakeScene(flat.scene(), desc));
+    ASSERT_GT(wanted, 0.0);
+    ASSERT_LT(wanted, 0.1) << "next to nothing beside the square's 1,000";
+    desc.samples = 64;
+    for (const bool layers : {false, true}) {
+        desc.layers = layers;
+        EXPECT_NEAR(flat.light(bakeScene(flat.scene(), desc)) / wanted, 1.0, 0.03) << layers;
+    }
+}
 
 // There are thousands of mesh lights, and some patches lie right beside a large one: what a few points of a
 // sample pass tell of it must have nothing to do with how their numbers were scrambled, or the replicates

@@ -57,7 +57,7 @@ TEST(BounceSeries, OneBounceTellsNothingButTheMean) {
     EXPECT_DOUBLE_EQ(series.learn(sumsOf(0.25, 7)), 7.0);
     EXPECT_DOUBLE_EQ(series.change, 0.25);
     EXPECT_EQ(series.error, 1.0);
-    EXPECT_EQ(series.bouncesTo(0.01, 100), 1u);
+    EXPECT_EQ(series.bouncesTo(0.01, 1.0, 100), 1u);
 }
 
 TEST(BounceSeries, TellsTheRestOfAGeometricSeries) {
@@ -91,9 +91,50 @@ TEST(BounceSeries, KnowsHowManyBouncesThereAreToAnAim) {
             uint32_t bounces = 0;
             for (double left = series.error; left > aim; left *= ratio)
                 ++bounces;
-            EXPECT_EQ(series.bouncesTo(aim, 1000), std::max(1u, bounces)) << ratio << ", " << aim;
+            EXPECT_EQ(series.bouncesTo(aim, 1.0, 1000), std::max(1u, bounces)) << ratio << ", " << aim;
         }
     }
+}
+
+// A tenth of all patches stands in a room that has a thousandth of the light. Of the mean light next to
+// nothing is left when most of the room's is still to come.
+TEST(BounceSeries, ADarkRoomIsAskedByItself) {
+    constexpr double kAim = 1e-3, kLocalAim = 2e-3, kRoom = 0.1;
+    for (const double ratio : {0.5, 0.7, 0.75}) {
+        Bounces outside{.ratio = 0.2, .change = 900, .mean = 1000}, room{.ratio = ratio};
+        BounceSeries series;
+        uint32_t bounces = 0, ofTheWhole = 0;
+        const auto learn = [&] {
+            const double change =
+                std::sqrt((1 - kRoom) * outside.change * outside.change + kRoom * room.change * room.change);
+            glm::dvec4 sums = sumsOf(change, (1 - kRoom) * outside.mean + kRoom * room.mean, 10);
+            sums.w = 10 * ((1 - kRoom) * outside.change / outside.mean + kRoom * room.change / room.mean);
+            series.learn(sums);
+            outside.bounce();
+            room.bounce();
+            ++bounces;
+            if (ofTheWhole == 0 && series.error <= kAim) ofTheWhole = bounces;
+        };
+        learn();
+        while (!series.isWithin(kAim, kLocalAim)) {
+            const uint32_t more = series.bouncesTo(kAim, kLocalAim, 1000);
+            for (uint32_t i = 0; i < more; ++i)
+                learn();
+            ASSERT_LT(bounces, 100u);
+        }
+        EXPECT_LE(kRoom * room.rest(), kLocalAim) << ratio;
+        EXPECT_GT(bounces, ofTheWhole + 2) << ratio << ": the mean light alone would have ended before";
+    }
+}
+
+TEST(BounceSeries, TheFirstBounceTellsNoRelativeChange) {
+    BounceSeries series;
+    series.learn({1, 3, 1, 3}, true); // w is the light before
+    EXPECT_EQ(series.localError, 1.0);
+    series.learn({1, 3, 1, 0.5});
+    EXPECT_EQ(series.localError, 1.0) << "one change says nothing of the next ones";
+    series.learn({1, 3, 1, 0.1});
+    EXPECT_LT(series.localError, 1.0);
 }
 
 TEST(BounceSeries, AfterThatManyBouncesTheAimIsReached) {
@@ -101,7 +142,7 @@ TEST(BounceSeries, AfterThatManyBouncesTheAimIsReached) {
         constexpr double kAim = 1e-3;
         Bounces light{.ratio = ratio};
         BounceSeries series = seriesAfterTwo(light);
-        for (uint32_t more = series.bouncesTo(kAim, 1000); more > 0; --more) {
+        for (uint32_t more = series.bouncesTo(kAim, 1.0, 1000); more > 0; --more) {
             light.bounce();
             series.learn(sumsOf(light.change, light.mean));
         }
@@ -112,9 +153,9 @@ TEST(BounceSeries, AfterThatManyBouncesTheAimIsReached) {
 TEST(BounceSeries, TakesOneMoreAtLeastAndNoMoreThanItMay) {
     Bounces light{.ratio = 0.9};
     const BounceSeries series = seriesAfterTwo(light);
-    EXPECT_EQ(series.bouncesTo(10.0, 8), 1u);
-    EXPECT_EQ(series.bouncesTo(1e-9, 8), 8u);
-    EXPECT_EQ(series.bouncesTo(1e-9, 1), 1u);
+    EXPECT_EQ(series.bouncesTo(10.0, 1.0, 8), 1u);
+    EXPECT_EQ(series.bouncesTo(1e-9, 1.0, 8), 8u);
+    EXPECT_EQ(series.bouncesTo(1e-9, 1.0, 1), 1u);
 }
 
 TEST(BounceSeries, WhatDoesNotFallIsLookedAtAfterEachBounce) {
@@ -123,7 +164,7 @@ TEST(BounceSeries, WhatDoesNotFallIsLookedAtAfterEachBounce) {
     series.learn(sumsOf(1.5, 2));
     EXPECT_DOUBLE_EQ(series.ratio, 1.5);
     EXPECT_EQ(series.error, 1.0);
-    EXPECT_EQ(series.bouncesTo(0.01, 100), 1u);
+    EXPECT_EQ(series.bouncesTo(0.01, 1.0, 100), 1u);
 }
 
 TEST(BounceSeries, WhatDoesNotChangeHasConverged) {
@@ -131,7 +172,7 @@ TEST(BounceSeries, WhatDoesNotChangeHasConverged) {
     series.learn(sumsOf(0, 3));
     EXPECT_EQ(series.error, 0.0);
     EXPECT_EQ(series.ratio, 0.0);
-    EXPECT_EQ(series.bouncesTo(0.01, 100), 1u);
+    EXPECT_EQ(series.bouncesTo(0.01, 1.0, 100), 1u);
 }
 
 TEST(BounceSeries, DarknessHasConverged) {

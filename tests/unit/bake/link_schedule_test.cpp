@@ -179,10 +179,14 @@ TEST(LinkSchedule, BouncesAreCountedOrFollowedUntilTheyHaveConverged) {
 TEST(LinkSchedule, BouncesHaveConvergedAtAShareOfTheErrorOrAtTheLimit) {
     const LinkSchedule schedule(kRules);
     LinkState state = after(1, 0);
+    state.series.localError = kLocalIterationAim;
     state.series.error = 0.00021;
     EXPECT_FALSE(schedule.hasConverged(state));
     state.series.error = 0.00019;
     EXPECT_TRUE(schedule.hasConverged(state));
+    state.series.localError = 1.01 * kLocalIterationAim;
+    EXPECT_FALSE(schedule.hasConverged(state)) << "of patches' own light more is to come";
+    state.series.localError = 0;
     const LinkSchedule exact(with([](LinkRules& r) { r.error = 0; }));
     EXPECT_FALSE(exact.hasConverged(state));
     state.series.error = 0.00009;
