@@ -9,6 +9,7 @@
 #include "app/offline/solve.h"
 #include "app/text/interrupt.h"
 #include "app/text/stopwatch.h"
+#include "assets/atlas/uv_sets.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/base/passing_folder.h"

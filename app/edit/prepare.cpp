@@ -1,6 +1,7 @@
 #include "app/edit/prepare.h"
 
 #include "assets/atlas/unwrap.h"
+#include "assets/atlas/uv_sets.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
 #include "assets/base/watch.h"

@@ -4,9 +4,11 @@
 #include "assets/atlas/page_deal.h"
 #include "assets/atlas/rect_pack.h"
 #include "assets/atlas/uv_grid.h"
+#include "assets/atlas/uv_sets.h"
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"
 #include "assets/base/watch.h"
+#include "assets/base/worker_pool.h"
 
 #include <spdlog/fmt/fmt.h>
 
@@ -15,136 +17,22 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <span>
 #include <utility>
 
 namespace relume {
 
 namespace {
 
-constexpr double kMaxOverlap = 0.01;   // of the UV area
-constexpr double kUvTolerance = 1e-4;  // exporters' rounding; below half a texel of a 4096 atlas
-constexpr double kMinUvExtent = 1e-6;  // below it a set is a point, as of a mesh never unwrapped
-constexpr uint32_t kMeshGutter = 2;    // [texels]
-constexpr uint32_t kAtlasCells = 2048; // to a side of the grid that measures whole atlases
-
-/// Tells what one UV set of one mesh is worth as a lightmap atlas.
-struct SetQuality {
-    bool usable = false;
-    bool complete = false; // every primitive has the set
-    std::string fault;     // why it is not usable
-    glm::dvec2 low{0.0}, high{0.0};
-    double uvArea = 0.0;
-    uint64_t visits = 0; // of cells, to find overlaps
-};
-
-/// Holds the set chosen for a mesh; texCoord -1: none.
-struct MeshChoice {
-    int texCoord = -1;
-    SetQuality quality;
-};
-
-bool hasUvTriangles(const Primitive& primitive, int set) {
-    return !primitive.indices.empty() && uvSet(primitive, set).size() == primitive.positions.size();
-}
-
-template<typename Visit>
-void forEachUvTriangle(const Mesh& mesh, int set, const Visit& visit) {
-    for (const Primitive& primitive : mesh.primitives) {
-        if (!hasUvTriangles(primitive, set)) continue;
-        const std::vector<glm::vec2>& uvs = uvSet(primitive, set);
-        for (size_t i = 0; i < primitive.indices.size(); i += 3) {
-            const uint32_t* t = &primitive.indices[i];
-            visit(glm::dvec2(uvs[t[0]]), glm::dvec2(uvs[t[1]]), glm::dvec2(uvs[t[2]]));
-        }
-    }
-}
-
-/// Adds a mesh's triangles as long as the grid can still say that they do not overlap: each may cover all
-/// cells, so that many triangles, or meshes, of the same UVs would cost their product.
-void addWhileFree(UvGrid& grid, const Mesh& mesh, int set) {
-    forEachUvTriangle(mesh, set, [&](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-        if (!grid.mustOverlap(kMaxOverlap)) grid.add(a, b, c);
-    });
-}
+constexpr uint32_t kMeshGutter = 2; // [texels]
 
 double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-SetQuality assess(const Mesh& mesh, int set) {
-    SetQuality quality;
-    const auto has = [set](const Primitive& p) { return hasUvTriangles(p, set); };
-    if (std::none_of(mesh.primitives.begin(), mesh.primitives.end(), has)) {
-        quality.fault = fmt::format("has no TEXCOORD_{}", set);
-        return quality;
-    }
-    quality.complete = std::all_of(mesh.primitives.begin(), mesh.primitives.end(),
-                                   [&](const Primitive& p) { return p.indices.empty() || has(p); });
-    quality.low = glm::dvec2(std::numeric_limits<double>::max());
-    quality.high = -quality.low;
-    size_t triangles = 0;
-    forEachUvTriangle(mesh, set, [&](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-        quality.low = glm::min(quality.low, glm::min(a, glm::min(b, c)));
-        quality.high = glm::max(quality.high, glm::max(a, glm::max(b, c)));
-        quality.uvArea += 0.5 * std::abs(cross(b - a, c - a));
-        ++triangles;
-    });
-    const glm::dvec2 extent = quality.high - quality.low;
-    if (!(std::min(quality.low.x, quality.low.y) >= -kUvTolerance) ||
-        !(std::max(quality.high.x, quality.high.y) <= 1.0 + kUvTolerance)) {
-        quality.fault = fmt::format("has a TEXCOORD_{} outside [0,1]", set);
-        return quality;
-    }
-    if (std::min(extent.x, extent.y) < kMinUvExtent) {
-        quality.fault = fmt::format("has a TEXCOORD_{} without area", set);
-        return quality;
-    }
-    // Where charts lie far apart, a coarse grid sees few of their texels: a finer one has the last word.
-    bool overlaps = true;
-    for (uint32_t cells = UvGrid::sizeFor(triangles); overlaps; cells = kAtlasCells) {
-        UvGrid grid(cells, quality.low, quality.high);
-        addWhileFree(grid, mesh, set);
-        quality.visits += grid.visits();
-        overlaps = grid.overlaps(kMaxOverlap);
-        if (cells == kAtlasCells) break;
-    }
-    if (overlaps) {
-        quality.fault = fmt::format("has a TEXCOORD_{} overlapping itself by more than 1 %", set);
-        return quality;
-    }
-    quality.usable = true;
-    return quality;
-}
-
 std::string nameOf(const std::vector<Mesh>& meshes, size_t index) {
     const std::string& name = meshes[index].name;
     return name.empty() ? fmt::format("mesh {}", index) : "mesh " + inQuotes(name);
-}
-
-MeshChoice chooseSet(const Scene& scene, size_t meshIndex, Warnings& warnings, uint64_t& visits) {
-    const Mesh& mesh = scene.meshes[meshIndex];
-    const std::string name = nameOf(scene.meshes, meshIndex);
-    SetQuality second = assess(mesh, 1);
-    visits += second.visits;
-    if (second.usable && second.complete) return {1, second};
-    SetQuality first = assess(mesh, 0);
-    visits += first.visits;
-    const bool takeFirst = first.usable && (first.complete || !second.usable);
-    if (takeFirst && !second.fault.empty() && second.fault != "has no TEXCOORD_1")
-        warnings.add(name, second.fault + ": TEXCOORD_0 is taken instead");
-    MeshChoice choice = takeFirst       ? MeshChoice{0, first}
-                        : second.usable ? MeshChoice{1, second}
-                                        : MeshChoice{-1, second};
-    if (choice.texCoord < 0)
-        choice.quality.fault = second.fault == "has no TEXCOORD_1" && first.fault != "has no TEXCOORD_0"
-                                   ? second.fault + " and " + first.fault
-                                   : second.fault;
-    if (choice.texCoord >= 0 && !choice.quality.complete)
-        warnings.add(
-            name, fmt::format("has parts without TEXCOORD_{}, which block light only: run 'relume unwrap' or "
-                              "leave out --no-unwrap",
-                              choice.texCoord));
-    return choice;
 }
 
 double worldArea(const Instance& instance, const Mesh& mesh, int set) {
@@ -163,7 +51,7 @@ double worldArea(const Instance& instance, const Mesh& mesh, int set) {
 }
 
 /// Tells whether all instances' UVs, as they are, make one atlas, page by page.
-bool formOneAtlas(const Scene& scene, LightmapAtlas& atlas) {
+bool formOneAtlas(const Scene& scene, LightmapAtlas& atlas, WorkerPool& pool) {
     std::set<std::pair<size_t, uint32_t>> seen;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const AtlasRect& rect = atlas.instances[i];
@@ -175,10 +63,12 @@ bool formOneAtlas(const Scene& scene, LightmapAtlas& atlas) {
     }
     for (uint32_t page = 0; page < atlas.pages.count; ++page) {
         UvGrid grid(kAtlasCells, glm::dvec2(0.0), glm::dvec2(1.0));
+        std::vector<UvRun> runs;
         for (size_t i = 0; i < scene.instances.size(); ++i)
             if (atlas.instances[i].texCoord >= 0 && atlas.instances[i].page == page)
-                addWhileFree(grid, scene.meshes[static_cast<size_t>(scene.instances[i].mesh)],
-                             atlas.instances[i].texCoord);
+                addRuns(scene.meshes[static_cast<size_t>(scene.instances[i].mesh)],
+                        atlas.instances[i].texCoord, runs);
+        addWhileFree(grid, runs, pool);
         atlas.visits += grid.visits();
         if (grid.overlaps(kMaxOverlap)) return false;
     }
@@ -337,29 +227,31 @@ void repack(const Scene& scene, const std::vector<MeshChoice>& choices, uint32_t
     }
 }
 
-std::vector<MeshChoice> chooseSets(const Scene& scene, bool unwrapped, LightmapAtlas& atlas,
-                                   Warnings& warnings) {
+/// Gives each instance the set of its mesh, and says what is wrong with it.
+std::vector<MeshChoice> takeSets(const Scene& scene, bool unwrapped, LightmapAtlas& atlas, Warnings& warnings,
+                                 WorkerPool& pool) {
     const char* mend =
         unwrapped ? "give its triangles an area" : "run 'relume unwrap' or leave out --no-unwrap";
-    std::vector<MeshChoice> choices(scene.meshes.size());
-    std::vector<bool> chosen(scene.meshes.size());
+    std::vector<MeshChoice> choices = chooseSets(scene, pool);
+    const std::vector<bool> used = usedMeshes(scene);
+    std::vector<bool> told(used.size());
     size_t usable = 0;
     std::string fault;
-    WatchedLoop loop("atlas", static_cast<double>(scene.instances.size()));
-    for (size_t i = 0; i < scene.instances.size(); ++i, loop.step()) {
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
         const size_t mesh = static_cast<size_t>(scene.instances[i].mesh);
-        if (scene.meshes[mesh].primitives.empty()) continue;
-        if (!chosen[mesh]) {
-            chosen[mesh] = true;
-            choices[mesh] = chooseSet(scene, mesh, warnings, atlas.visits);
-            const std::string& problem = choices[mesh].quality.fault;
-            if (choices[mesh].texCoord < 0)
-                warnings.add(nameOf(scene.meshes, mesh), problem + ", it blocks light only: " + mend);
-            if (choices[mesh].texCoord < 0 && fault.empty())
-                fault = nameOf(scene.meshes, mesh) + " " + problem;
+        if (!used[mesh]) continue;
+        const MeshChoice& choice = choices[mesh];
+        if (!told[mesh]) {
+            told[mesh] = true;
+            atlas.visits += choice.visits;
+            const std::string name = nameOf(scene.meshes, mesh), &problem = choice.quality.fault;
+            for (const std::string& warning : choice.warnings)
+                warnings.add(name, warning);
+            if (choice.texCoord < 0) warnings.add(name, problem + ", it blocks light only: " + mend);
+            if (choice.texCoord < 0 && fault.empty()) fault = name + " " + problem;
         }
-        atlas.instances[i].texCoord = choices[mesh].texCoord;
-        usable += choices[mesh].texCoord >= 0;
+        atlas.instances[i].texCoord = choice.texCoord;
+        usable += choice.texCoord >= 0;
     }
     if (usable == 0)
         throw Error(fmt::format("{}: no mesh has usable lightmap UVs ({}): {}", scene.path,
@@ -379,46 +271,15 @@ LightmapAtlas buildAtlas(const Scene& scene, uint32_t size, bool unwrapped,
     for (size_t i = 0; i < scene.instances.size(); ++i)
         atlas.instances[i].page = scene.instances[i].page;
     Warnings warnings;
-    const std::vector<MeshChoice> choices = chooseSets(scene, unwrapped, atlas, warnings);
-    const bool asItIs = atlas.pages.count == scene.pages && formOneAtlas(scene, atlas);
+    WorkerPool pool(threadsFor(scene.meshes));
+    const std::vector<MeshChoice> choices = takeSets(scene, unwrapped, atlas, warnings, pool);
+    const bool asItIs = atlas.pages.count == scene.pages && formOneAtlas(scene, atlas, pool);
     atlas.warnings = warnings.lines(scene.path);
     if (!asItIs)
         repack(scene, choices, size, atlas, memory);
     else if (memory)
         *memory = {};
     return atlas;
-}
-
-namespace {
-
-bool hasSurface(const Mesh& mesh) {
-    for (const Primitive& primitive : mesh.primitives)
-        for (size_t i = 0; i + 2 < primitive.indices.size(); i += 3) {
-            const auto corner = [&](size_t k) { return primitive.positions[primitive.indices[i + k]]; };
-            const glm::vec3 a = corner(0);
-            if (glm::cross(corner(1) - a, corner(2) - a) != glm::vec3(0.0f)) return true;
-        }
-    return false;
-}
-
-} // namespace
-
-size_t countUnmapped(const Scene& scene) {
-    std::vector<bool> used(scene.meshes.size(), false);
-    for (const Instance& instance : scene.instances)
-        used[static_cast<size_t>(instance.mesh)] = true;
-    size_t count = 0;
-    for (size_t i = 0; i < used.size(); ++i)
-        count += used[i] && hasSurface(scene.meshes[i]) && lightmapSet(scene.meshes[i]) < 0 ? 1 : 0;
-    return count;
-}
-
-int lightmapSet(const Mesh& mesh) {
-    for (int set : {1, 0}) {
-        const SetQuality quality = assess(mesh, set);
-        if (quality.usable && quality.complete) return set;
-    }
-    return -1;
 }
 
 AtlasStatistics measureAtlas(const Scene& scene, const LightmapAtlas& atlas, uint32_t size) {

@@ -54,13 +54,6 @@ LightmapAtlas onOneSheet(LightmapAtlas atlas);
 /// moved in it get a mesh of their own.
 Scene withAtlas(const Scene& scene, const LightmapAtlas& atlas);
 
-/// Returns the UV set that all of a mesh's primitives have and that is a valid atlas by itself: 1, else 0,
-/// else -1.
-int lightmapSet(const Mesh& mesh);
-
-/// Returns how many meshes that instances use have a surface and no such set.
-size_t countUnmapped(const Scene& scene);
-
 /// Tells how well a scene's lightmap UVs use the atlas.
 struct AtlasStatistics {
     double coverage = 0; // covered share of all pages [1]

@@ -4,6 +4,7 @@
 #include "assets/atlas/page_deal.h"
 #include "assets/atlas/page_layout.h"
 #include "assets/atlas/unwrap_shapes.h"
+#include "assets/atlas/uv_sets.h"
 #include "assets/atlas/uv_writer.h"
 #include "assets/base/error.h"
 #include "assets/base/warnings.h"

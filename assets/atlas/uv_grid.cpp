@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 
 namespace relume {
@@ -77,6 +78,28 @@ void UvGrid::add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {
         }
         return true;
     });
+}
+
+void UvGrid::addBeside(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, Added& added) {
+    forEachSpan(a, b, c, [&](size_t begin, size_t end) {
+        added.visits += end - begin;
+        for (size_t i = begin; i < end; ++i) {
+            const std::atomic_ref<uint8_t> cell(counts_[i]);
+            uint8_t before = cell.load(std::memory_order_relaxed);
+            while (before < 255 && !cell.compare_exchange_weak(before, static_cast<uint8_t>(before + 1),
+                                                               std::memory_order_relaxed)) {
+            }
+            added.covered += before == 0;
+            added.overlapped += before == 1;
+        }
+        return true;
+    });
+}
+
+void UvGrid::count(const Added& added) {
+    covered_ += added.covered;
+    overlapped_ += added.overlapped;
+    visits_ += added.visits;
 }
 
 bool UvGrid::addIfFree(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c) {

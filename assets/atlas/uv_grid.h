@@ -17,6 +17,16 @@ public:
     /// Adds a triangle of either winding; parts outside the grid are ignored.
     void add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
 
+    /// What some triangles have added to a grid.
+    struct Added {
+        uint64_t covered = 0, overlapped = 0, visits = 0; // cells, as below
+    };
+    /// Adds a triangle while other threads may add theirs. What it adds to the counts below, which nobody may
+    /// look at meanwhile, is told to `added`, for count().
+    void addBeside(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c, Added& added);
+    /// Counts what was added beside other threads; one thread calls it at a time.
+    void count(const Added& added);
+
     /// Adds the triangle unless it covers a cell that another one covers; tells whether it was added.
     bool addIfFree(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
 
@@ -28,11 +38,6 @@ public:
     /// Tells whether more than this share of the covered cells is overlapped.
     bool overlaps(double share) const {
         return static_cast<double>(overlapped_) > share * static_cast<double>(covered_);
-    }
-    /// Tells whether that will be so even if what follows covers all other cells once: then the rest need not
-    /// be added.
-    bool mustOverlap(double share) const {
-        return static_cast<double>(overlapped_) > share * static_cast<double>(cells());
     }
     uint8_t count(uint32_t x, uint32_t y) const { return counts_[size_t(y) * size_ + x]; } // stops at 255
 

@@ -3,19 +3,33 @@
 #include "assets/atlas/uv_charts.h"
 #include "assets/base/error.h"
 #include "assets/base/log.h"
-#include "assets/base/watch.h"
+#include "assets/base/worker_pool.h"
 #include "assets/model/scene_limits.h"
 
 #include <algorithm>
 #include <array>
 #include <cfloat>
 #include <cmath>
+#include <functional>
 #include <map>
-#include <optional>
 
 namespace relume {
 
 namespace {
+
+/// Triangles that a thread lists at a time.
+constexpr size_t kPortion = 4096;
+
+/// Returns how many threads these instances' triangles are worth.
+uint32_t threadsFor(const Scene& scene, std::span<const uint32_t> instances) {
+    constexpr size_t kOfThread = size_t{1} << 15; // triangles: fewer take no longer than a thread's start
+    size_t triangles = 0;
+    for (const uint32_t i : instances)
+        for (const Primitive& primitive :
+             scene.meshes[static_cast<size_t>(scene.instances[i].mesh)].primitives)
+            triangles += primitive.indices.size() / 3;
+    return static_cast<uint32_t>(std::min<size_t>(WorkerPool::defaultSize(), 1 + triangles / kOfThread));
+}
 
 /// Holds one primitive of one instance on its way into the list.
 struct Part {
@@ -54,152 +68,237 @@ glm::mat3 normalMatrix(const glm::mat4& transform) {
     return glm::mat3(largest > 0.0 ? cofactors * (sign / largest) : cofactors);
 }
 
-/// Appends triangles to the corner arrays.
+/// Tells where a texture finds its coordinates.
+class TextureUvs {
+public:
+    /// None where the material has no such texture, or the primitive no such coordinates.
+    TextureUvs(const Part& part, TextureRef Material::*ref) {
+        const std::vector<Material>& materials = part.scene->materials;
+        if (part.material >= materials.size()) return;
+        use_ = &(materials[part.material].*ref);
+        if (use_->texture >= 0) uvs_ = &uvsOf(*part.primitive, *use_);
+    }
+    glm::vec2 at(uint32_t vertex) const {
+        return uvs_ && !uvs_->empty() ? glm::vec2(use_->transform * glm::vec3((*uvs_)[vertex], 1.0f))
+                                      : glm::vec2(0.0f);
+    }
+
+private:
+    const TextureRef* use_ = nullptr;
+    const std::vector<glm::vec2>* uvs_ = nullptr;
+};
+
+using Corners = std::array<uint32_t, 3>; // vertices of a primitive
+using Places = std::array<glm::vec3, 3>; // [m], in the world
+
+/// Reads the triangles of one part in the world.
+class PartReader {
+public:
+    explicit PartReader(const Part& part)
+        : part_(part), toNormal_(normalMatrix(part.transform)),
+          mirrored_(glm::determinant(glm::dmat3(part.transform)) < 0.0),
+          lightmapUvs_(uvSet(*part.primitive, part.atlas->instances[part.instance].texCoord)),
+          base_(part, &Material::baseColorTexture), emission_(part, &Material::emissionTexture),
+          metallic_(part, &Material::metallicRoughnessTexture) {}
+
+    Corners corners(size_t triangle) const {
+        const uint32_t* first = &part_.primitive->indices[3 * triangle];
+        return mirrored_ ? Corners{first[0], first[2], first[1]} : Corners{first[0], first[1], first[2]};
+    }
+    Places places(const Corners& corners) const {
+        return {placeOf(corners[0]), placeOf(corners[1]), placeOf(corners[2])};
+    }
+    /// Writes a triangle to this place of the list.
+    void write(WorldMesh& mesh, size_t place, size_t triangle) const;
+
+private:
+    glm::vec3 placeOf(uint32_t vertex) const {
+        return glm::vec3(part_.transform * glm::vec4(part_.primitive->positions[vertex], 1.0f));
+    }
+    glm::vec3 normalOf(uint32_t vertex, const glm::vec3& face) const;
+
+    const Part& part_;
+    const glm::mat3 toNormal_;
+    const bool mirrored_;
+    const std::vector<glm::vec2>& lightmapUvs_;
+    const TextureUvs base_, emission_, metallic_;
+};
+
+glm::vec3 PartReader::normalOf(uint32_t vertex, const glm::vec3& face) const {
+    const std::vector<glm::vec3>& normals = part_.primitive->normals;
+    const glm::vec3 normal = normals.empty() ? glm::vec3(0.0f) : toNormal_ * normals[vertex];
+    const float square = glm::dot(normal, normal);
+    return square > FLT_MIN && std::isfinite(square) ? normal / std::sqrt(square) : glm::normalize(face);
+}
+
+void PartReader::write(WorldMesh& mesh, size_t place, size_t triangle) const {
+    const Corners vertices = corners(triangle);
+    const Places p = places(vertices);
+    const glm::vec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
+    for (size_t k = 0; k < 3; ++k) {
+        const uint32_t vertex = vertices[k];
+        const size_t corner = 3 * place + k;
+        const glm::vec2 uv =
+            part_.charts ? part_.atlas->sheetUv(part_.instance, lightmapUvs_[vertex]) : glm::vec2(0.0f);
+        mesh.positions[corner] = p[k];
+        mesh.normals[corner] = normalOf(vertex, face);
+        mesh.lightmapUv[corner] = glm::clamp(uv, 0.0f, 1.0f);
+        mesh.baseUv[corner] = base_.at(vertex);
+        mesh.emissionUv[corner] = emission_.at(vertex);
+        mesh.metallicUv[corner] = metallic_.at(vertex);
+        mesh.colors[corner] =
+            part_.primitive->colors.empty() ? glm::vec4(1.0f) : part_.primitive->colors[vertex];
+    }
+    mesh.material[place] = part_.material;
+    mesh.instance[place] = part_.instance;
+    mesh.chart[place] = part_.charts ? part_.chartBase + (*part_.charts)[triangle] : kNoChart;
+}
+
+/// Tells whether a triangle is listed, or why it is not.
+enum class Fate { Listed, WithoutArea, Far };
+
+Fate fateOf(const Places& p) {
+    if (!isWithinReach(p[0]) || !isWithinReach(p[1]) || !isWithinReach(p[2])) return Fate::Far;
+    const glm::vec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
+    const float square = glm::dot(face, face);
+    // Normalizing is no longer exact below FLT_MIN.
+    return square > FLT_MIN && std::isfinite(square) ? Fate::Listed : Fate::WithoutArea;
+}
+
+/// Lists the triangles of parts, which all threads of a pool share: they are counted first, so that each
+/// portion knows its place.
 class Flattener {
 public:
     explicit Flattener(WorldMesh& mesh) : mesh_(mesh) {}
-    void reserve(size_t triangles);
+    /// Adds a part behind those that were added before.
     void add(const Part& part);
+    size_t partCount() const { return parts_.size(); }
+    /// Lists what was added; returns how many triangles of the first `parts` parts are.
+    uint32_t list(size_t parts, WorkerPool& pool);
+
     size_t dropped() const { return dropped_; }
     /// Returns the number of triangles that reach beyond kFarthest, by mesh.
     const std::map<int, size_t>& far() const { return far_; }
 
 private:
-    void addUvs(const TextureRef* use, const Primitive& primitive, const uint32_t* corners,
-                std::vector<glm::vec2>& out) const;
-    void addCorners(const Part& part, const uint32_t* corners);
-    void addNormals(const std::array<glm::vec3, 3>& positions, const uint32_t* corners);
+    /// Some triangles of one part.
+    struct Portion {
+        size_t part, first, last;
+        size_t place = 0; // of its first triangle in the list
+        size_t listed = 0, dropped = 0, far = 0;
+    };
+    void count(Portion& portion) const;
+    void write(const Portion& portion) const;
+    void resize(size_t triangles, WorkerPool& pool);
 
     WorldMesh& mesh_;
-    std::vector<glm::vec3> positions_, normals_; // of the part's vertices, world space
+    std::vector<Part> parts_;
+    std::vector<Portion> portions_;
     size_t dropped_ = 0;
     std::map<int, size_t> far_;
 };
 
-void Flattener::reserve(size_t triangles) {
-    mesh_.positions.reserve(3 * triangles);
-    mesh_.normals.reserve(3 * triangles);
-    mesh_.lightmapUv.reserve(3 * triangles);
-    mesh_.baseUv.reserve(3 * triangles);
-    mesh_.emissionUv.reserve(3 * triangles);
-    mesh_.metallicUv.reserve(3 * triangles);
-    mesh_.colors.reserve(3 * triangles);
-    mesh_.material.reserve(triangles);
-    mesh_.instance.reserve(triangles);
-    mesh_.chart.reserve(triangles);
-}
-
-void Flattener::addUvs(const TextureRef* use, const Primitive& primitive, const uint32_t* corners,
-                       std::vector<glm::vec2>& out) const {
-    const std::vector<glm::vec2>* uvs = use ? &uvsOf(primitive, *use) : nullptr;
-    for (int k = 0; k < 3; ++k)
-        out.push_back(uvs && !uvs->empty() ? glm::vec2(use->transform * glm::vec3((*uvs)[corners[k]], 1.0f))
-                                           : glm::vec2(0.0f));
-}
-
-void Flattener::addNormals(const std::array<glm::vec3, 3>& positions, const uint32_t* corners) {
-    const glm::vec3 face = glm::cross(positions[1] - positions[0], positions[2] - positions[0]);
-    for (int k = 0; k < 3; ++k) {
-        const glm::vec3& normal = normals_[corners[k]];
-        const float square = glm::dot(normal, normal);
-        mesh_.normals.push_back(square > FLT_MIN && std::isfinite(square) ? normal / std::sqrt(square)
-                                                                          : glm::normalize(face));
-    }
-}
-
-void Flattener::addCorners(const Part& part, const uint32_t* corners) {
-    const Primitive& primitive = *part.primitive;
-    const std::vector<glm::vec2>& uvs = uvSet(primitive, part.atlas->instances[part.instance].texCoord);
-    for (int k = 0; k < 3; ++k) {
-        mesh_.positions.push_back(positions_[corners[k]]);
-        const glm::vec2 uv =
-            part.charts ? part.atlas->sheetUv(part.instance, uvs[corners[k]]) : glm::vec2(0.0f);
-        mesh_.lightmapUv.push_back(glm::clamp(uv, 0.0f, 1.0f));
-        mesh_.colors.push_back(primitive.colors.empty() ? glm::vec4(1.0f) : primitive.colors[corners[k]]);
-    }
-    const std::vector<Material>& materials = part.scene->materials;
-    const Material* material = part.material < materials.size() ? &materials[part.material] : nullptr;
-    const auto used = [&](TextureRef Material::*ref) {
-        return material && (material->*ref).texture >= 0 ? &(material->*ref) : nullptr;
-    };
-    addUvs(used(&Material::baseColorTexture), primitive, corners, mesh_.baseUv);
-    addUvs(used(&Material::emissionTexture), primitive, corners, mesh_.emissionUv);
-    addUvs(used(&Material::metallicRoughnessTexture), primitive, corners, mesh_.metallicUv);
-}
-
 void Flattener::add(const Part& part) {
-    const Primitive& primitive = *part.primitive;
-    const glm::mat3 toNormal = normalMatrix(part.transform);
-    const bool mirrored = glm::determinant(glm::dmat3(part.transform)) < 0.0;
-    positions_.resize(primitive.positions.size());
-    normals_.resize(primitive.positions.size());
-    for (size_t v = 0; v < positions_.size(); ++v) {
-        positions_[v] = glm::vec3(part.transform * glm::vec4(primitive.positions[v], 1.0f));
-        normals_[v] = primitive.normals.empty() ? glm::vec3(0.0f) : toNormal * primitive.normals[v];
-    }
-    constexpr unsigned kTriangles = 4096;
-    WatchedLoop loop("triangles", static_cast<double>(primitive.indices.size() / 3), kTriangles);
-    for (size_t i = 0; i < primitive.indices.size(); i += 3, loop.step()) {
-        std::array<uint32_t, 3> corners = {primitive.indices[i], primitive.indices[i + 1],
-                                           primitive.indices[i + 2]};
-        if (mirrored) std::swap(corners[1], corners[2]);
-        const std::array<glm::vec3, 3> p = {positions_[corners[0]], positions_[corners[1]],
-                                            positions_[corners[2]]};
-        if (!isWithinReach(p[0]) || !isWithinReach(p[1]) || !isWithinReach(p[2])) {
-            ++far_[part.scene->instances[part.instance].mesh];
-            continue;
-        }
-        const glm::vec3 face = glm::cross(p[1] - p[0], p[2] - p[0]);
-        const float square = glm::dot(face, face);
-        // Normalizing is no longer exact below FLT_MIN.
-        if (!(square > FLT_MIN) || !std::isfinite(square)) {
-            ++dropped_;
-            continue;
-        }
-        addCorners(part, corners.data());
-        addNormals(p, corners.data());
-        mesh_.material.push_back(part.material);
-        mesh_.instance.push_back(part.instance);
-        mesh_.chart.push_back(part.charts ? part.chartBase + (*part.charts)[i / 3] : kNoChart);
+    const size_t count = part.primitive->indices.size() / 3;
+    for (size_t first = 0; first < count; first += kPortion)
+        portions_.push_back({parts_.size(), first, std::min(count, first + kPortion)});
+    parts_.push_back(part);
+}
+
+void Flattener::count(Portion& portion) const {
+    const PartReader reader(parts_[portion.part]);
+    for (size_t i = portion.first; i < portion.last; ++i) {
+        const Fate fate = fateOf(reader.places(reader.corners(i)));
+        portion.listed += fate == Fate::Listed;
+        portion.dropped += fate == Fate::WithoutArea;
+        portion.far += fate == Fate::Far;
     }
 }
 
-/// Lists the parts of all instances in file order; charts of a mesh are found once for all its instances.
+void Flattener::write(const Portion& portion) const {
+    const PartReader reader(parts_[portion.part]);
+    size_t place = portion.place;
+    for (size_t i = portion.first; i < portion.last; ++i)
+        if (portion.listed == portion.last - portion.first ||
+            fateOf(reader.places(reader.corners(i))) == Fate::Listed)
+            reader.write(mesh_, place++, i);
+}
+
+// Memory that nobody has written to yet is slow to get, so each array has a thread.
+void Flattener::resize(size_t triangles, WorkerPool& pool) {
+    const std::array<std::function<void()>, 10> arrays = {
+        [&] { mesh_.positions.resize(3 * triangles); },  [&] { mesh_.normals.resize(3 * triangles); },
+        [&] { mesh_.lightmapUv.resize(3 * triangles); }, [&] { mesh_.baseUv.resize(3 * triangles); },
+        [&] { mesh_.emissionUv.resize(3 * triangles); }, [&] { mesh_.metallicUv.resize(3 * triangles); },
+        [&] { mesh_.colors.resize(3 * triangles); },     [&] { mesh_.material.resize(triangles); },
+        [&] { mesh_.instance.resize(triangles); },       [&] { mesh_.chart.resize(triangles); }};
+    pool.run(arrays.size(), [&](uint32_t i) { arrays[i](); });
+}
+
+uint32_t Flattener::list(size_t parts, WorkerPool& pool) {
+    const auto portions = static_cast<uint32_t>(portions_.size());
+    runWatched(&pool, "triangles", portions, [&](uint32_t i) { count(portions_[i]); });
+    size_t listed = 0, ofFirst = 0;
+    for (Portion& portion : portions_) {
+        portion.place = listed;
+        listed += portion.listed;
+        if (portion.part < parts) ofFirst = listed;
+        dropped_ += portion.dropped;
+        const Part& part = parts_[portion.part];
+        if (portion.far > 0) far_[part.scene->instances[part.instance].mesh] += portion.far;
+    }
+    resize(listed, pool);
+    runWatched(&pool, "triangles", portions, [&](uint32_t i) { write(portions_[i]); });
+    return static_cast<uint32_t>(ofFirst);
+}
+
+/// Finds the charts of the meshes that these instances have lightmap UVs of, by mesh; all instances of a mesh
+/// take the same UV set.
+std::vector<UvCharts> chartsOf(const Scene& scene, const LightmapAtlas& atlas,
+                               std::span<const uint32_t> instances, WorkerPool& pool) {
+    std::vector<int> set(scene.meshes.size(), -1);
+    for (const uint32_t i : instances)
+        if (atlas.instances[i].texCoord >= 0)
+            set[static_cast<size_t>(scene.instances[i].mesh)] = atlas.instances[i].texCoord;
+    std::vector<UvCharts> charts(set.size());
+    runWatched(&pool, "triangles", static_cast<uint32_t>(set.size()), [&](uint32_t i) {
+        if (set[i] >= 0) charts[i] = findCharts(scene.meshes[i], set[i]);
+    });
+    return charts;
+}
+
+/// Lists the parts of instances in file order.
 class PartList {
 public:
-    PartList(const Scene& scene, const LightmapAtlas& atlas, std::span<const uint32_t> instances)
-        : charts_(scene.meshes.size()) {
+    PartList(const Scene& scene, const LightmapAtlas& atlas, std::span<const uint32_t> instances,
+             WorkerPool& pool)
+        : charts_(chartsOf(scene, atlas, instances, pool)) {
         for (const uint32_t i : instances)
             addInstance(scene, atlas, i);
     }
     const std::vector<Part>& parts() const { return parts_; }
     uint32_t chartBound() const { return nextChart_; }
-    size_t triangles() const { return triangles_; }
 
 private:
     void addInstance(const Scene& scene, const LightmapAtlas& atlas, size_t index) {
         const Instance& instance = scene.instances[index];
-        const AtlasRect& rect = atlas.instances[index];
-        const size_t meshIndex = static_cast<size_t>(instance.mesh);
-        const Mesh& mesh = scene.meshes[meshIndex];
-        std::optional<UvCharts>& charts = charts_[meshIndex];
-        if (rect.texCoord >= 0 && !charts) charts = findCharts(mesh, rect.texCoord);
-        for (size_t k = 0; k < mesh.primitives.size(); ++k) {
-            const Primitive& primitive = mesh.primitives[k];
-            const bool mapped = rect.texCoord >= 0 && !charts->chart[k].empty();
+        const bool hasUvs = atlas.instances[index].texCoord >= 0;
+        const auto mesh = static_cast<size_t>(instance.mesh);
+        const std::vector<Primitive>& primitives = scene.meshes[mesh].primitives;
+        for (size_t k = 0; k < primitives.size(); ++k) {
+            const Primitive& primitive = primitives[k];
+            const bool mapped = hasUvs && !charts_[mesh].chart[k].empty();
             const uint32_t material = primitive.material >= 0 ? static_cast<uint32_t>(primitive.material)
                                                               : static_cast<uint32_t>(scene.materials.size());
-            parts_.push_back({&scene, &primitive, &atlas, mapped ? &charts->chart[k] : nullptr, nextChart_,
-                              static_cast<uint32_t>(index), material, instance.transform});
-            triangles_ += primitive.indices.size() / 3;
+            parts_.push_back({&scene, &primitive, &atlas, mapped ? &charts_[mesh].chart[k] : nullptr,
+                              nextChart_, static_cast<uint32_t>(index), material, instance.transform});
         }
-        if (rect.texCoord >= 0) nextChart_ += charts->count;
+        if (hasUvs) nextChart_ += charts_[mesh].count;
     }
 
-    std::vector<std::optional<UvCharts>> charts_; // per mesh; all its instances take the same UV set
+    std::vector<UvCharts> charts_; // per mesh
     std::vector<Part> parts_;
     uint32_t nextChart_ = 0;
-    size_t triangles_ = 0;
 };
 
 void warnAboutDropped(const Scene& scene, const Flattener& flattener) {
@@ -227,11 +326,11 @@ void compactCharts(WorldMesh& mesh, uint32_t bound) {
 WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
                            std::span<const uint32_t> instances) {
     ASSERT(atlas.instances.size() == scene.instances.size());
-    const PartList list(scene, atlas, instances);
+    WorkerPool pool(threadsFor(scene, instances));
+    const PartList list(scene, atlas, instances, pool);
     WorldMesh mesh;
     mesh.pages = atlas.pages;
     Flattener flattener(mesh);
-    flattener.reserve(list.triangles());
     const auto addParts = [&](bool masked) {
         for (const Part& part : list.parts())
             if (const int material = part.primitive->material;
@@ -239,8 +338,9 @@ WorldMesh flattenInstances(const Scene& scene, const LightmapAtlas& atlas,
                 flattener.add(part);
     };
     addParts(false);
-    mesh.opaqueCount = mesh.triangleCount();
+    const size_t opaqueParts = flattener.partCount();
     addParts(true);
+    mesh.opaqueCount = flattener.list(opaqueParts, pool);
     warnAboutDropped(scene, flattener);
     compactCharts(mesh, list.chartBound());
     return mesh;
@@ -260,11 +360,13 @@ WorldMesh flattenPanes(const Scene& scene) {
         return mesh;
     LightmapAtlas unmapped;
     unmapped.instances.resize(scene.instances.size());
-    const PartList list(scene, unmapped, shownInstances(scene));
+    const std::vector<uint32_t> instances = shownInstances(scene);
+    WorkerPool pool(threadsFor(scene, instances));
+    const PartList list(scene, unmapped, instances, pool);
     Flattener flattener(mesh);
     for (const Part& part : list.parts())
         if (isPane(scene, part.primitive->material)) flattener.add(part);
-    mesh.opaqueCount = mesh.triangleCount();
+    mesh.opaqueCount = flattener.list(flattener.partCount(), pool);
     return mesh;
 }
 

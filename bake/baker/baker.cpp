@@ -36,6 +36,14 @@ TracerKind tracerKind(const BakeSettings& settings, const vk::DeviceInfo& device
     return kind == TracerKind::Auto ? chooseTracer(device, why) : kind;
 }
 
+// Returns the kind that traces triangles, Auto where none does.
+TracerKind exactTracer(const BakeSettings& settings, const vk::DeviceInfo& device) {
+    std::string why;
+    if (usesVoxels(settings) && settings.solver.transport.rtrad) return TracerKind::Auto;
+    const TracerKind kind = tracerKind(settings, device, why);
+    return kind == TracerKind::Voxel ? chooseTracer(device, why) : kind;
+}
+
 // The parts of a scene that its materials are painted with.
 using Pictures = std::pair<std::vector<Image>, std::vector<Texture>>;
 Pictures takePictures(Scene& scene) {
@@ -58,6 +66,9 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Bake
     : device_(device), scene_(scene), editable_(editable), settings_(settings),
       phaseHook_(std::move(phaseHook)) {
     requireRoom(surfaces);
+    std::optional<TreeAhead> tree;
+    if (exactTracer(settings_, device.info()) == TracerKind::Bvh)
+        tree.emplace(surfaces.mesh, device.workers());
     PhaseClock clock(phases_);
     makePatches(std::move(surfaces.mesh), surfaces.former, clock);
     std::optional<Carry> carry = carryFrom(surfaces.former);
@@ -72,7 +83,7 @@ Baker::Baker(const vk::Device& device, const Scene& scene, Scene* editable, Bake
     if (followsObjects(settings_))
         mover_ = std::make_unique<ObjectMover>(ObjectMover::On{device, scene, patches_, *light_},
                                                settings.conservative);
-    makeTracers();
+    makeTracers(tree ? &*tree : nullptr);
     whole_ = preparation == Preparation::Whole || !followsObjects(settings_) || carry ||
              patches_.count > kMostOfGlance || !makeGlance();
     if (!whole_) return;
@@ -209,7 +220,7 @@ void Baker::complete() {
 
 // Makes the tracer of triangles, which also tell whether a patch lies inside something: a voxel knows no
 // inside.
-void Baker::makeTracers() {
+void Baker::makeTracers(TreeAhead* tree) {
     const vk::MemoryOwner owner("trace");
     std::string why = "as asked for";
     const TracerKind kind = tracerKind(settings_, device_.info(), why);
@@ -225,8 +236,8 @@ void Baker::makeTracers() {
     if (marches && settings_.solver.transport.rtrad) return;
     PhaseClock clock(phases_);
     onPhase("tracer");
-    const TracerKind exact = kind == TracerKind::Voxel ? TracerKind::Auto : kind;
-    tracer_ = makeTracer(exact, device_, patches_.scene, light_->patches);
+    tracer_ = makeTracer(exactTracer(settings_, device_.info()), device_, patches_.scene, light_->patches, {},
+                         tree);
     clock.end("tracer");
 }
 

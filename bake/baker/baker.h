@@ -119,7 +119,7 @@ private:
     void planSpill();
     bool goesOnWith(const FormerBake* former, const LightmapPages& pages) const;
     void makePatches(WorldMesh mesh, const FormerBake* former, PhaseClock& clock);
-    void makeTracers();
+    void makeTracers(TreeAhead* tree);
     bool makeGlance();
     void findValidity(Carry* carry);
     void makeVoxels();

@@ -1,13 +1,13 @@
 #include "bake/trace/gpu_tracer.h"
 
 #include "bake/base/retrace_types.h"
-#include "bake/trace/moving_bvh.h"
 #include "bake/vk/accel.h"
 #include "bake/vk/commands.h"
 #include "bake/vk/program.h"
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 namespace relume {
 namespace {
@@ -229,8 +229,8 @@ private:
 
 class BvhTracer final : public ComputeTracer {
 public:
-    BvhTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches)
-        : ComputeTracer(device, scene, patches, "bvh"), tree_(scene.mesh, &device.workers()) {
+    BvhTracer(const vk::Device& device, const TraceScene& scene, const vk::Buffer& patches, MovingBvh tree)
+        : ComputeTracer(device, scene, patches, "bvh"), tree_(std::move(tree)) {
         put(nodes_, tree_.bvh().nodes, {}, "bvh nodes");
         put(triangles_, tree_.bvh().triangles, {}, "bvh triangles");
         buffers_.setAccel(nodes_.address(), triangles_.address());
@@ -382,8 +382,8 @@ std::unique_ptr<Tracer> makeQueryTracer(const vk::Device& device, const TraceSce
     return std::make_unique<QueryTracer>(device, scene, patches);
 }
 std::unique_ptr<Tracer> makeBvhTracer(const vk::Device& device, const TraceScene& scene,
-                                      const vk::Buffer& patches) {
-    return std::make_unique<BvhTracer>(device, scene, patches);
+                                      const vk::Buffer& patches, MovingBvh tree) {
+    return std::make_unique<BvhTracer>(device, scene, patches, std::move(tree));
 }
 
 std::unique_ptr<Tracer> makeVoxelTracer(const vk::Device& device, const TraceScene& scene,

@@ -73,14 +73,14 @@ void checkTracer(TracerKind kind, const vk::Device& device) {
 } // namespace
 
 std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
-                                   const vk::Buffer& patches, const VoxelSettings& voxels) {
+                                   const vk::Buffer& patches, const VoxelSettings& voxels, TreeAhead* tree) {
     std::string why;
     if (voxels.ratio == 1) kind = TracerKind::Voxel;
     if (kind == TracerKind::Auto) kind = chooseTracer(device.info(), why);
     checkTracer(kind, device);
     if (voxels.ratio > 1 && kind != TracerKind::Voxel) {
         checkTracer(TracerKind::Voxel, device);
-        return makeMixedTracer(device, makeTracer(kind, device, scene, patches),
+        return makeMixedTracer(device, makeTracer(kind, device, scene, patches, {}, tree),
                                makeVoxelTracer(device, scene, patches, voxels));
     }
     switch (kind) {
@@ -89,7 +89,8 @@ std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, co
     case TracerKind::Query:
         return makeQueryTracer(device, scene, patches);
     case TracerKind::Bvh:
-        return makeBvhTracer(device, scene, patches);
+        return makeBvhTracer(device, scene, patches,
+                             tree ? tree->take() : MovingBvh(scene.mesh, &device.workers()));
     case TracerKind::Voxel:
         return makeVoxelTracer(device, scene, patches, {.resolution = voxels.resolution});
     default:

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "bake/trace/tracer.h"
+#include "bake/trace/tree_ahead.h"
 #include "bake/trace/voxel_map.h"
 
 namespace relume {
@@ -21,9 +22,10 @@ const char* tracerName(TracerKind kind);
 
 /// Makes a tracer and builds its acceleration structure. `patches` holds scene.patches on the device.
 /// `voxels` is for the voxel tracer: a ratio of 1 makes that one, whatever the kind; with a ratio above 1 it
-/// takes its share of the work of a tracer of another kind (mixed_tracer.h). Throws Error when the device
-/// cannot.
+/// takes its share of the work of a tracer of another kind (mixed_tracer.h). With the scene's `tree`, which
+/// then is taken, a `bvh` tracer builds none. Throws Error when the device cannot.
 std::unique_ptr<Tracer> makeTracer(TracerKind kind, const vk::Device& device, const TraceScene& scene,
-                                   const vk::Buffer& patches, const VoxelSettings& voxels = {});
+                                   const vk::Buffer& patches, const VoxelSettings& voxels = {},
+                                   TreeAhead* tree = nullptr);
 
 } // namespace relume

@@ -2,6 +2,7 @@
 
 #include "app/commands/command.h"
 #include "assets/atlas/lightmap_atlas.h"
+#include "assets/atlas/uv_sets.h"
 #include "assets/base/error.h"
 #include "assets/gltf/gltf.h"
 #include "tests/unit/glb_builder.h"

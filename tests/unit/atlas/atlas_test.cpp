@@ -2,13 +2,17 @@
 
 #include "assets/atlas/rect_pack.h"
 #include "assets/atlas/uv_grid.h"
+#include "assets/atlas/uv_sets.h"
 #include "assets/base/error.h"
+#include "assets/base/worker_pool.h"
 #include "assets/gltf/gltf.h"
 #include "tests/unit/shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <filesystem>
 
 namespace relume {
@@ -68,6 +72,36 @@ TEST(UvGrid, CoversAreaAndIgnoresWhatIsOutside) {
     EXPECT_EQ(outside.covered(), 0u);
     outside.add({-3, -3}, {5, -3}, {-3, 5}); // its long edge runs from (2,0) to (0,2)
     EXPECT_EQ(outside.covered(), 100u * 100u);
+}
+
+TEST(UvGrid, ThreadsThatAddBesideEachOtherCountAsOneDoes) {
+    constexpr uint32_t kThreads = 4, kEach = 2000;
+    const auto triangle = [](uint32_t i) {
+        const glm::dvec2 at(std::fmod(0.618034 * i, 0.9), std::fmod(0.754878 * i, 0.9));
+        return std::array<glm::dvec2, 3>{at, at + glm::dvec2(0.08, 0.01), at + glm::dvec2(0.02, 0.09)};
+    };
+    UvGrid one(128, glm::dvec2(0), glm::dvec2(1)), shared(128, glm::dvec2(0), glm::dvec2(1));
+    for (uint32_t i = 0; i < kThreads * kEach; ++i) {
+        const auto [a, b, c] = triangle(i);
+        one.add(a, b, c);
+    }
+    std::array<UvGrid::Added, kThreads> added;
+    WorkerPool pool(kThreads);
+    pool.run(kThreads, [&](uint32_t thread) {
+        for (uint32_t i = thread; i < kThreads * kEach; i += kThreads) {
+            const auto [a, b, c] = triangle(i);
+            shared.addBeside(a, b, c, added[thread]);
+        }
+    });
+    for (const UvGrid::Added& own : added)
+        shared.count(own);
+    EXPECT_EQ(shared.covered(), one.covered());
+    EXPECT_EQ(shared.overlapped(), one.overlapped());
+    EXPECT_EQ(shared.visits(), one.visits());
+    EXPECT_GT(one.overlapped(), one.covered() / 2);
+    for (uint32_t y = 0; y < 128; ++y)
+        for (uint32_t x = 0; x < 128; ++x)
+            ASSERT_EQ(shared.count(x, y), one.count(x, y)) << x << ", " << y;
 }
 
 TEST(RectPack, KeepsTheGutterAndTheBounds) {

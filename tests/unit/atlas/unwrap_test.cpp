@@ -3,6 +3,7 @@
 #include "assets/atlas/lightmap_atlas.h"
 #include "assets/atlas/planar_charts.h"
 #include "assets/atlas/uv_charts.h"
+#include "assets/atlas/uv_sets.h"
 #include "assets/atlas/world_mesh.h"
 #include "assets/base/error.h"
 #include "assets/gltf/gltf.h"

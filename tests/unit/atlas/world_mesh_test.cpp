@@ -29,6 +29,44 @@ void expectSamePlace(const glm::vec3& a, const glm::vec3& b) {
         EXPECT_NEAR(a[c], b[c], 1e-5f);
 }
 
+// So many triangles are listed by several threads, portion by portion.
+TEST(WorldMesh, ManyTrianglesKeepTheirOrder) {
+    constexpr uint32_t kTriangles = 150'000, kFlat = 7; // each so-manieth one has no area
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i < kTriangles; ++i) {
+        const float x = float(i % 500), y = float(i / 500);
+        const bool flat = i % kFlat == 3;
+        positions.insert(positions.end(),
+                         {{x, y, 0}, {x + .5f, y, 0}, flat ? glm::vec3(x, y, 0) : glm::vec3(x, y + .5f, 0)});
+        for (uint32_t k = 0; k < 3; ++k)
+            indices.push_back(3 * i + k);
+    }
+    Primitive masked = test::primitiveOf(positions, indices), opaque = masked;
+    masked.material = 0;
+    opaque.material = 1;
+    Scene scene = test::sceneOf(masked);
+    scene.meshes[0].primitives.push_back(opaque);
+    scene.materials.resize(2);
+    scene.materials[0].alphaMode = AlphaMode::Mask;
+    LightmapAtlas atlas;
+    atlas.instances.resize(1);
+    const WorldMesh mesh = flatten(scene, atlas);
+    const uint32_t listed = kTriangles - (kTriangles - 3 + kFlat - 1) / kFlat;
+    ASSERT_EQ(mesh.triangleCount(), 2 * listed);
+    EXPECT_EQ(mesh.opaqueCount, listed);
+    uint32_t place = 0;
+    for (uint32_t i = 0; i < kTriangles; ++i) {
+        if (i % kFlat == 3) continue;
+        for (const uint32_t at : {place, listed + place}) {
+            ASSERT_EQ(mesh.positions[3 * at], positions[3 * i]) << i;
+            ASSERT_EQ(mesh.positions[3 * at + 2], positions[3 * i + 2]) << i;
+            ASSERT_EQ(mesh.material[at], at < listed ? 1u : 0u) << i;
+        }
+        ++place;
+    }
+}
+
 TEST(WorldMesh, PositionsUvsAndDefaults) {
     Scene scene = test::sceneOf(test::square());
     scene.instances[0].transform = glm::translate(glm::mat4(1), glm::vec3(1, 2, 3));

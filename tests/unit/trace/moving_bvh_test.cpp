@@ -1,5 +1,6 @@
 // Trees whose triangles move are held against trees built anew.
 #include "bake/trace/moving_bvh.h"
+#include "bake/trace/tree_ahead.h"
 
 #include <cstring>
 #include <numeric>
@@ -168,6 +169,22 @@ TEST(MovingBvh, IsTheBuildersUntilSomethingMoves) {
     ASSERT_EQ(moving.bvh().nodes.size(), anew.nodes.size());
     EXPECT_EQ(std::memcmp(moving.bvh().nodes.data(), anew.nodes.data(), anew.nodes.size() * sizeof(BvhNode)),
               0);
+}
+
+TEST(MovingBvh, BuiltAheadItIsTheBuildersThoughTheMeshIsGone) {
+    Stage stage;
+    const Bvh wanted = buildBvh(stage.mesh);
+    WorkerPool pool(2);
+    TreeAhead ahead(stage.mesh, pool);
+    stage.mesh = {};
+    const MovingBvh tree = ahead.take();
+    ASSERT_EQ(tree.bvh().nodes.size(), wanted.nodes.size());
+    ASSERT_EQ(tree.bvh().triangles.size(), wanted.triangles.size());
+    const auto same = [](const auto& a, const auto& b) {
+        return std::memcmp(a.data(), b.data(), a.size() * sizeof(a.front())) == 0;
+    };
+    EXPECT_TRUE(same(tree.bvh().nodes, wanted.nodes));
+    EXPECT_TRUE(same(tree.bvh().triangles, wanted.triangles));
 }
 
 TEST(MovingBvh, HitsWhatATreeBuiltAnewHitsAfterManyMoves) {
