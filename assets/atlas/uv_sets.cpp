@@ -148,15 +148,14 @@ void addWhileFree(UvGrid& grid, std::span<const UvRun> runs, WorkerPool& pool) {
         return;
     }
     std::mutex mutex; // of the grid's counts
+    std::atomic<uint64_t> overlapped{grid.overlapped()};
     pool.run(static_cast<uint32_t>(runs.size()), [&](uint32_t i) {
-        uint64_t before = 0;
-        {
-            const std::lock_guard lock(mutex);
-            before = grid.overlapped();
-        }
         UvGrid::Added added;
         forEachTriangle(runs[i], [&](const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-            if (static_cast<double>(before + added.overlapped) <= most) grid.addBeside(a, b, c, added);
+            if (static_cast<double>(overlapped.load(std::memory_order_relaxed)) > most) return;
+            const uint64_t before = added.overlapped;
+            grid.addBeside(a, b, c, added);
+            if (added.overlapped > before) overlapped += added.overlapped - before;
         });
         const std::lock_guard lock(mutex);
         grid.count(added);

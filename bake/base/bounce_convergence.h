@@ -15,8 +15,8 @@ constexpr double kKeptIterationShare = 0.02;
 /// Of each patch's own light they may leave such a share, on the mean over all patches: of a level in the sun
 /// hardly anything of the mean light lies in its rooms, where most of the light is that of later bounces.
 constexpr double kLocalIterationAim = 0.002;
-/// Layers may leave more: most of their light's own light counts for little beside that of all others, and
-/// they gather over all links each time.
+/// Layers may leave more: in most places a layer's share of the light is small, and layers gather over all
+/// links each time.
 constexpr double kLocalIterationAimOfLayers = 0.005;
 
 /// Returns what bounces over such links may leave where this error is asked for, 0: none.

@@ -335,9 +335,10 @@ double BounceJob::iterationAim() const {
     return desc_.hasty ? std::max(aim, kFirstIterationError) : aim;
 }
 
-// A first look does not wait for dark corners.
+// First looks do not wait for dark corners, and neither does the sum, which shows an edit until its layers
+// have followed.
 double BounceJob::localIterationAim() const {
-    return desc_.hasty ? 1.0 : kLocalIterationAimOfLayers;
+    return desc_.hasty || desc_.sum ? 1.0 : kLocalIterationAimOfLayers;
 }
 
 bool BounceJob::hasConverged(const Lane& lane) const {

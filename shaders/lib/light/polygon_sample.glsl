@@ -12,6 +12,9 @@
 // counts as even: f differs by a factor of 4.3 at most over it because of the distance, and by .2 of its mean
 // as a rule.
 CONST float kEvenReach = 0.35f;
+// A part is no longer halved whose reach is this share of its distance from the origin: floats know no places
+// between its corners.
+CONST float kLeastReach = 1e-6f;
 // There are at most so many halvings: from a hundred-thousandth of the polygon's size away on it is cut until
 // it is even. Rays start all over their texels, so where a texel ends at the polygon some start as close as
 // one likes, and what is not even there has no bound on its variance.
@@ -53,11 +56,12 @@ FUNCTION vec3 partPoint(PolygonPart q, vec2 u) {
     return trianglePoint(q.a, q.c, q.d, vec2((u.x - q.split) / (1.0f - q.split), u.y));
 }
 
+// Tells whether a part need not be halved, or cannot be.
 FUNCTION bool isEven(vec3 p, PolygonPart q) {
     vec3 centre = 0.25f * (q.a + q.b + q.c + q.d);
     vec3 a = q.a - centre, b = q.b - centre, c = q.c - centre, d = q.d - centre, away = centre - p;
     float reach2 = max(max(dot(a, a), dot(b, b)), max(dot(c, c), dot(d, d)));
-    return reach2 <= kEvenReach * kEvenReach * dot(away, away);
+    return reach2 <= max(kEvenReach * kEvenReach * dot(away, away), kLeastReach * kLeastReach * dot(centre, centre));
 }
 
 // Turns a triangle so that its longest edge is that from a to b.

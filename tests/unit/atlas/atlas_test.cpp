@@ -104,6 +104,30 @@ TEST(UvGrid, ThreadsThatAddBesideEachOtherCountAsOneDoes) {
             ASSERT_EQ(shared.count(x, y), one.count(x, y)) << x << ", " << y;
 }
 
+// Each of them covers the whole set: without an end, cells times triangles would be visited, by several
+// threads alike.
+TEST(LightmapSet, ManySquaresUponEachOtherAreSoonGivenUp) {
+    constexpr uint32_t kSquares = 60'000;
+    std::vector<glm::vec3> positions;
+    std::vector<uint32_t> indices;
+    for (uint32_t i = 0; i < kSquares; ++i) {
+        const float x = static_cast<float>(i);
+        positions.insert(positions.end(), {{x, 0, 0}, {x + 1, 0, 0}, {x + 1, 1, 0}, {x, 1, 0}});
+        for (const uint32_t corner : {0u, 1u, 2u, 0u, 2u, 3u})
+            indices.push_back(4 * i + corner);
+    }
+    Primitive squares = test::primitiveOf(positions, indices);
+    for (uint32_t i = 0; i < kSquares; ++i)
+        squares.texCoord1.insert(squares.texCoord1.end(), {{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+    Scene scene = test::sceneOf(squares);
+    EXPECT_EQ(countUnmapped(scene), 1u);
+    WorkerPool pool(4);
+    const std::vector<MeshChoice> choices = chooseSets(scene, pool);
+    EXPECT_EQ(choices.at(0).texCoord, -1);
+    // Two squares of two grids, of 2048 x 2048 cells at most, and what four threads do at the same time.
+    EXPECT_LT(choices.at(0).visits, 2u * (2 + 4) * 2048 * 2048);
+}
+
 TEST(RectPack, KeepsTheGutterAndTheBounds) {
     std::vector<PackedRect> rects;
     for (uint32_t i = 0; i < 60; ++i)
