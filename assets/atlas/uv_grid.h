@@ -17,7 +17,7 @@ public:
     /// Adds a triangle of either winding; parts outside the grid are ignored.
     void add(glm::dvec2 a, glm::dvec2 b, glm::dvec2 c);
 
-    /// What some triangles have added to a grid.
+    /// Holds what some triangles have added to a grid.
     struct Added {
         uint64_t covered = 0, overlapped = 0, visits = 0; // cells, as below
     };

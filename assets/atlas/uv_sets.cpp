@@ -61,7 +61,7 @@ SetQuality assess(const Mesh& mesh, int set, WorkerPool& pool) {
         quality.fault = fmt::format("has a TEXCOORD_{} without area", set);
         return quality;
     }
-    // Where charts lie far apart, a coarse grid sees few of their texels: a finer one has the last word.
+    // A coarse grid sees few texels of charts that lie far apart: a finer one has the last word.
     bool overlaps = true;
     for (uint32_t cells = UvGrid::sizeFor(triangles); overlaps; cells = kAtlasCells) {
         UvGrid grid(cells, quality.low, quality.high);

@@ -12,8 +12,8 @@ constexpr double kLeastIterationError = 1e-4;
 /// share.
 constexpr double kKeptIterationShare = 0.02;
 
-/// Of each patch's own light they may leave such a share, on the mean over all patches: of a level in the sun
-/// hardly anything of the mean light lies in its rooms, where most of the light is that of later bounces.
+/// They may leave such a share of each patch's own light, on the mean over all patches: hardly anything of
+/// the mean light of a level in the sun lies in its rooms, where most of the light is that of later bounces.
 constexpr double kLocalIterationAim = 0.002;
 /// Layers may leave more: in most places a layer's share of the light is small, and layers gather over all
 /// links each time.

@@ -491,9 +491,7 @@ TEST(Unwrap, ReferenceScenesWithoutTheirUvs) {
         for (Mesh& mesh : scene.meshes)
             for (Primitive& primitive : mesh.primitives)
                 primitive.texCoord1.clear();
-        UnwrapDesc desc;
-        desc.onlyMissing = false;
-        expectValid(scene, desc, name);
+        expectValid(scene, {.onlyMissing = false}, name);
     }
 }
 
