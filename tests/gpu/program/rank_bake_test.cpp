@@ -110,9 +110,10 @@ TEST_F(RankBake, DirectionalHasTheBytesOfOneProcess) {
 TEST_F(RankBake, MethodsOfPairsHaveTheBytesOfOneProcess) {
     expectSameBytes({"--size", "72", "--method", "pure", "--passes", "3"}, kAnyNumber);
     expectSameBytes({"--size", "64", "--method", "pure", "--preset", "rtrad", "--passes", "2"}, {3});
-    expectSameBytes({"--size", "72", "--method", "adaptive", "--passes", "3"}, kAnyNumber);
+    // How many processes share the pairs is one rule for all methods, so a few numbers do for these.
+    expectSameBytes({"--size", "72", "--method", "adaptive", "--passes", "3"}, {2, 5});
     for (const char* method : {"static", "montecarlo", "mipmapped"})
-        expectSameBytes({"--size", "72", "--method", method, "--window", "4", "--passes", "2"}, kAnyNumber);
+        expectSameBytes({"--size", "72", "--method", method, "--window", "4", "--passes", "2"}, {2, 5});
     expectSameBytes({"--size", "24", "--method", "pure", "--passes", "2"}, {3}); // fewer rows than processes
     scene_ = "gallery.glb"; // caches have no room for all
     expectSameBytes({"--size", "64", "--method", "pure", "--passes", "2", "--cache-memory", "2M"}, {3});

@@ -162,7 +162,7 @@ TEST_F(ChunkSampling, ListedChunksGetTheSameDirectLightInAnyPortion) {
     const Scene scene = lampInTheCorner();
     const FloatImage truth = bakeScene(scene, reference(8192)).lighting;
     for (const TracerKind tracer : tracersOfTestDevice()) {
-        constexpr double asked = 0.03;
+        constexpr double asked = 0.05;
         BakeDesc desc = localOnly(asked, false);
         desc.tracer = tracer;
         const std::unique_ptr<Baker> baker = makeBaker(scene, desc);

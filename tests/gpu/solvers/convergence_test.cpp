@@ -131,7 +131,7 @@ TEST(Convergence, RoomsOfABrightLevelHaveAllTheirBounces) {
 // never agree.
 TEST(Convergence, DirectLightOfManyEmittersGoesOnConverging) {
     const Scene scene = generateScene("atrium");
-    constexpr uint32_t few = 1024, many = 16384;
+    constexpr uint32_t few = 256, many = 4096;
     const Baked first = bakeScene(scene, hybrid(32, few, 1)), then = bakeScene(scene, hybrid(32, many, 1));
     EXPECT_GT(first.progress.error, leastFall(double(many) / few) * then.progress.error);
 }
