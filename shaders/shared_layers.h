@@ -100,8 +100,7 @@ struct LayerLocalPush {
     ADDRESS patches;
     ADDRESS composite; // vec4[patchCount]: light, what is proportional to its standard error
     ADDRESS bins;      // uint[kBinCopies][kBinsOfCopy], as lib/local_error.glsl says: counts are added
-    ADDRESS chunkSums; // vec4[chunkCount]: texels; their light and w^2, or the squares of how far they are
-                       // off and of the inverse of what that is relative to
+    ADDRESS chunkSums; // vec4[chunkCount]: texels; their light, or the squares of how far they are off; w^2
     float deviation;   // standard error over the composite's w; 0: texels are counted by their light
     float least;       // what is darker is off relative to this [cd/m^2]
     uint chunkCount;

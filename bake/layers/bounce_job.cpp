@@ -12,6 +12,9 @@ namespace {
 
 // The first level is in haste: this iteration error is small enough for it.
 constexpr double kFirstIterationError = 0.01;
+// That level may be the last one where no more than this is left of each patch's own light, which is told as
+// two to three times what it is where most of it is new light.
+constexpr double kMostLocalHaste = 0.05;
 // The CPU looks for the first time after so many bounces, and then after so many more at most. A look waits
 // for the device, which takes longer than a bounce.
 constexpr uint32_t kFirstLook = 2, kMostUnseen = 8;
@@ -327,6 +330,14 @@ std::vector<uint32_t> BounceJob::lookAtGather() {
     return ended;
 }
 
+bool BounceJob::endedInHaste(const Lane& lane) const {
+    return desc_.hasty && tools_->kit.settings.passes == 0 && lane.series.localError > kMostLocalHaste;
+}
+
+bool BounceJob::hasConverged(const Lane& lane) const {
+    return lane.series.isWithin(iterationAim(), localIterationAim());
+}
+
 double BounceJob::iterationAim() const {
     const SolverSettings& settings = tools_->kit.settings;
     const double own = settings.layers.error, composite = settings.error;
@@ -339,10 +350,6 @@ double BounceJob::iterationAim() const {
 // have followed.
 double BounceJob::localIterationAim() const {
     return desc_.hasty || desc_.sum ? 1.0 : kLocalIterationAimOfLayers;
-}
-
-bool BounceJob::hasConverged(const Lane& lane) const {
-    return lane.series.isWithin(iterationAim(), localIterationAim());
 }
 
 // Learns what the last pass changed; `both` says that what the pass before changed has not been seen yet.

@@ -46,6 +46,8 @@ public:
     bool over() const { return over_; }
     const std::vector<Lane>& lanes() const { return desc_.lanes; }
     bool sum() const { return desc_.sum; }
+    /// Tells whether the lane's bounces were in haste and left dark places without much of their light.
+    bool endedInHaste(const Lane& lane) const;
     /// Tells whether the layer is still under way.
     bool needs(const Layer* layer) const;
     /// Tells whether the layer that leads the job has a level, or has just got one.

@@ -34,7 +34,7 @@ struct LocalScale {
 struct Deviations {
     std::vector<double> bins;         // [kErrorBins]
     std::vector<ChunkSquares> chunks; // without the bias
-    std::vector<double> inverse;      // of squares of what light is relative to, per chunk
+    std::vector<double> squares;      // of how far off the light is, not relative to it, per chunk
 };
 
 LayerPass::LocalWork workOf(const vk::Buffer& composite, const LocalScale& scale) {
@@ -47,12 +47,13 @@ LocalScale scaleOf(const Shown& all, double error) {
             .least = static_cast<float>(std::max(kLocalFloor * medianLight(all.lights), 1e-30))};
 }
 
-// Takes the bias of smoothing along, where there is any.
+// Takes the bias of smoothing along, where there is any. In a chunk at the edge of a pool of light it lies
+// where noise does: were it the same in all of its texels, that would be many times a dark one's own light.
 LocalError localErrorOf(WorkerPool& pool, Deviations off, std::span<const double> bias) {
     const LocalError noise = normalErrorOf(off.bins);
     if (bias.empty()) return noise;
     for (size_t c = 0; c < std::min(bias.size(), off.chunks.size()); ++c)
-        if (off.chunks[c].texels > 0) off.chunks[c].bias = bias[c] * off.inverse[c] / off.chunks[c].texels;
+        if (off.squares[c] > 0) off.chunks[c].bias = bias[c] * off.chunks[c].noise / off.squares[c];
     return withBias(pool, noise, off.chunks);
 }
 
@@ -105,13 +106,13 @@ Deviations deviationsOf(WorkerPool& pool, std::span<const glm::vec4> light,
         std::array<uint32_t, shader::kErrorBins> bins{};
     };
     const std::vector<Bins> parts = overSlices<Bins>(pool, patches, [&](size_t i, Bins& part) {
-        const double off = scale.of(light[i]), own = std::max(meanOf(light[i]), scale.least);
+        const double off = scale.of(light[i]), absolute = scale.deviation * light[i].w;
         ++part.bins[shader::binOf(static_cast<float>(off), shader::kLeastErrorOctave,
                                   shader::kErrorBinsPerOctave, shader::kErrorBins)];
         ChunkSquares& chunk = all.chunks[i / shader::kChunk]; // of one slice alone
         chunk.texels += 1;
         chunk.noise += off * off;
-        all.inverse[i / shader::kChunk] += 1.0 / (own * own);
+        all.squares[i / shader::kChunk] += absolute * absolute;
     });
     for (const Bins& part : parts)
         for (size_t bin = 0; bin < all.bins.size(); ++bin)
@@ -164,7 +165,7 @@ public:
             vk::readBuffer<glm::vec4>(kit_.input.device, kit_.buffers.chunkSums, kit_.chunkCount());
         for (const glm::vec4& sum : sums) {
             all.chunks.push_back({.texels = sum.x, .noise = sum.y});
-            all.inverse.push_back(sum.z);
+            all.squares.push_back(scale.deviation * scale.deviation * sum.z);
         }
         return all;
     }

@@ -56,6 +56,7 @@ struct DirectPart {
 struct LayerPlan {
     LayerLevel wanted;      // the level to be made next, where it has one and goes on
     bool converged = false; // it needs no further level
+    bool hasty = false;     // its bounces were in haste, and dark places lack light
     double directFall = 1;  // how direct light's variance falls, by its last levels: SampledPart::fall
 };
 

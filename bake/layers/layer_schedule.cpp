@@ -54,6 +54,13 @@ LayerLevel LayerSchedule::firstLevel() const {
     return {std::min(2u, last.directSamplePasses), std::min(2u, last.linkSamplePasses)};
 }
 
+LayerLevel LayerSchedule::levelAfter(LayerLevel level) const {
+    const LayerLevel last = lastLevel();
+    const LayerLevel next = {level.directSamplePasses,
+                             std::min(onLadder(level.linkSamplePasses + 1.0), last.linkSamplePasses)};
+    return next == level ? last : next;
+}
+
 bool LayerSchedule::isHasty(LayerLevel target) const {
     return target == firstLevel() && target != lastLevel();
 }
@@ -185,8 +192,11 @@ void LayerSchedule::apportion(const Layers& layers, bool weighedAnew, const Comp
     if (!underWay) {
         standing.composite = compositeOf(there, products);
         const std::vector<LayerLevel> together = levelsTogether(standing, local);
-        for (size_t i = 0; i < there.size(); ++i)
-            there[i]->plan.wanted = together[i];
+        for (size_t i = 0; i < there.size(); ++i) {
+            // The composite may be as good as is asked for while dark places lack bounces.
+            const bool hasty = there[i]->plan.hasty && together[i] == there[i]->level;
+            there[i]->plan.wanted = hasty ? levelAfter(together[i]) : together[i];
+        }
     }
     for (Layer* layer : there) {
         if (!isGoodEnough(*layer)) layer->plan.wanted = atLeast(layer->plan.wanted, levelByItself(*layer));

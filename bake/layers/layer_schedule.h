@@ -139,6 +139,7 @@ private:
     SampledPart directPart(const Layer& layer, double variance) const;
     SampledPart linkPart(const Layer& layer, double variance, size_t sharers) const;
     LayerLevel levelByItself(const Layer& layer) const;
+    LayerLevel levelAfter(LayerLevel level) const;
     struct Standing;
     std::vector<LayerLevel> levelsFor(const Standing& standing, const CompositeLocal* local,
                                       double share) const;

@@ -211,8 +211,11 @@ void LayerSolver::beginBounces(Layer& leader, LayerLevel target) {
 
 void LayerSolver::bounceBatch() {
     auto& job = std::get<BounceJob>(job_);
-    for (const uint32_t lane : job.batch())
-        finishLevel(job.lanes()[lane], lane, job.gathers());
+    for (const uint32_t index : job.batch()) {
+        const BounceJob::Lane& lane = job.lanes()[index];
+        lane.layer->plan.hasty = job.endedInHaste(lane);
+        finishLevel(lane, index, job.gathers());
+    }
     if (job.over()) job_ = std::monostate();
 }
 

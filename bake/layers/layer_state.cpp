@@ -37,6 +37,7 @@ void appendLayerState(Layer& layer, const LayerStateSize& size, std::vector<uint
     own.error = layer.error;
     own.plan.wanted = layer.plan.wanted; // by name, as the whole would bring its padding along
     own.plan.converged = layer.plan.converged;
+    own.plan.hasty = layer.plan.hasty;
     own.plan.directFall = layer.plan.directFall;
     own.biasKnown = !layer.sketch.bias.empty();
     const auto* from = reinterpret_cast<const uint8_t*>(&own);

@@ -9,8 +9,8 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Bins { uint 
 
 layout(local_size_x = 64) in;
 
-// These keep squares finite where light is next to none.
-const float kLeastLight = 1e-15, kMostOff = 1e15;
+// This keeps squares finite where light is next to none.
+const float kMostOff = 1e15;
 
 shared vec4 terms[kChunk];
 
@@ -25,10 +25,10 @@ void main() {
         uint bin = chunk % kBinCopies * kBinsOfCopy;
         if (push.deviation > 0.0) {
             own = max(own, push.least);
-            float off = push.deviation * all.w / own, inverse = 1.0 / max(own, kLeastLight);
+            float off = push.deviation * all.w / own;
             bin += kLightBins + binOf(off, kLeastErrorOctave, kErrorBinsPerOctave, kErrorBins);
             off = min(off, kMostOff);
-            terms[lane] = vec4(1.0, off * off, inverse * inverse, 0.0);
+            terms[lane] = vec4(1.0, off * off, all.w * all.w, 0.0);
         } else {
             bin += binOf(own, kLeastLightOctave, kLightBinsPerOctave, kLightBins);
             terms[lane] = vec4(1.0, own, all.w * all.w, 0.0);

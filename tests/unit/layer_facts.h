@@ -76,6 +76,11 @@ public:
         layer_->plan.converged = true;
         return *this;
     }
+    /// Its bounces would have gone on, had nobody waited for them.
+    LayerFacts& hasty() {
+        layer_->plan.hasty = true;
+        return *this;
+    }
     /// Direct light is somewhere of where objects were.
     LayerFacts& outdated() {
         layer_->dirty = {0, Layer::kDirty};

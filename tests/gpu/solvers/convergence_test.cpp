@@ -41,12 +41,14 @@ void wallWithHole(SceneMaker& maker, glm::vec3 corner, glm::vec3 u, glm::vec3 v,
     part(low.x, high.x, high.y, glm::length(v));
 }
 
-/// A room with a weak lamp, another that has a door to it, and a bright square outside.
+/// A room with a weak lamp or a window, another that has a door to it, and a bright square outside.
 struct Flat {
     SceneMaker maker{96};
     std::vector<TexelRect> inner; // of the room behind
 
-    Flat() {
+    bool window = false;
+
+    explicit Flat(bool hasWindow = false) : window(hasWindow) {
         const int grey = maker.material(0.6f);
         maker.quad({20, -20, 0}, 40.0f * kX, 40.0f * kY, grey, {40, 40});
         const auto room = [&](float x, std::vector<TexelRect>* rects) { // but for the walls along y
@@ -62,7 +64,10 @@ struct Flat {
         };
         room(0, nullptr);
         room(-4, &inner);
-        maker.quad({4, 0, 0}, 3.0f * kZ, 3.0f * kY, grey, {14, 14});
+        if (window)
+            wallWithHole(maker, {4, 0, 0}, 3.0f * kZ, 3.0f * kY, {0.5f, 0.5f}, {2.5f, 2.5f}, grey);
+        else
+            maker.quad({4, 0, 0}, 3.0f * kZ, 3.0f * kY, grey, {14, 14});
         wallWithHole(maker, {0, 0, 0}, 3.0f * kY, 3.0f * kZ, {1, 0}, {2, 2}, grey);
         wallWithHole(maker, {0, 0, 0}, 3.0f * kZ, 3.0f * kY, {0, 1}, {2, 2}, grey);
         inner.push_back(maker.quad({-4, 0, 0}, 3.0f * kY, 3.0f * kZ, grey, {14, 14}));
@@ -74,7 +79,7 @@ struct Flat {
         lamp.type = LightType::Rectangle;
         lamp.intensity = 1.0f;
         lamp.transform[3] = glm::vec4(2.0f, 1.5f, 2.9f, 1.0f);
-        scene.lights = {lamp};
+        if (!window) scene.lights = {lamp};
         return scene;
     }
     double light(const Baked& baked) const {
@@ -124,6 +129,20 @@ TEST(Convergence, RoomsOfABrightLevelHaveAllTheirBounces) {
         desc.layers = layers;
         EXPECT_NEAR(flat.light(bakeScene(flat.scene(), desc)) / wanted, 1.0, 0.03) << layers;
     }
+}
+
+// The first look at a layer, whose bounces are in haste, has the error that is asked for. It must not be the
+// last one.
+TEST(Convergence, ALayerDoesNotEndInHaste) {
+    const Flat flat(true);
+    const double wanted = flat.light(bakeScene(flat.scene(), hybrid(flat.maker.size(), 4096)));
+    BakeDesc desc = hybrid(flat.maker.size(), 0);
+    desc.error = 0.5;
+    desc.localError = 1.0;
+    desc.layers = true;
+    const Baked coarse = bakeScene(flat.scene(), desc);
+    EXPECT_LE(coarse.progress.samples, 64u);
+    EXPECT_NEAR(flat.light(coarse) / wanted, 1.0, 0.1);
 }
 
 // There are thousands of mesh lights, and some patches lie right beside a large one: what a few points of a

@@ -94,6 +94,23 @@ TEST(CompositeLocalError, HasTheBiasOfSmoothingWhereItIs) {
     EXPECT_NEAR(both.p50, alone.p50, 0.2 * alone.p50);
 }
 
+// Chunks at the edge of a pool of light are half dark. What smoothing moves there lies in the bright half, as
+// noise does: for the dark one it would be a hundred times its own light.
+TEST(CompositeLocalError, HasNoBiasOfBrightTexelsInDarkOnes) {
+    constexpr size_t kChunks = 400;
+    Texels texels;
+    for (size_t c = 0; c < kChunks; ++c) {
+        texels.add(shader::kChunk / 2, 100.0f, 1.0f);
+        texels.add(shader::kChunk / 2, 1.0f, 0.01f);
+    }
+    // Half of all texels are off by the root of two times what all are; biases are as large as the noise.
+    const double noise = 0.01, mean = 50.5, off = noise * mean * std::sqrt(2.0), size = off * off;
+    const std::vector<double> bias(kChunks, shader::kChunk / 2.0 * size);
+    WorkerPool pool(2);
+    const LocalError local = localErrorOf(pool, texels.light, texels.patches, noise, bias);
+    EXPECT_NEAR(local.p95, kOf95 * std::sqrt(2.0) * off / 100.0, 0.1 * local.p95);
+}
+
 TEST(CompositeLocalError, LeavesOutWhatIsNotShown) {
     Texels texels;
     texels.add(1000, 1.0f, 1.0f);

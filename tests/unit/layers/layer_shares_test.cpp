@@ -28,6 +28,17 @@ TEST(LayerShares, AllAreDoneWhereTheCompositeIs) {
     EXPECT_EQ(wantedOf(layersOf(direct(0.005), direct(0.015))), "2+2 done, 2+2 done");
 }
 
+// The mean light may be as good as is asked for while dark places lack bounces.
+TEST(LayerShares, WhatBouncedInHasteGoesOn) {
+    const auto hasty = [] { return std::move(direct(0.005).hasty()); };
+    EXPECT_EQ(wantedOf(layersOf(hasty(), direct(0.005))), "2+3, 2+2 done");
+    EXPECT_EQ(wantedOf(layersOf(hasty(), direct(0.04))), "2+3, 8+2");
+    EXPECT_EQ(wantedOf(layersOf(hasty().switchedOff(), direct(0.005))), "2+2 done, 2+2 done");
+    // There are no more links to go on with, so that all points are taken.
+    const ScheduleRules few = {.samples = 32, .error = 0.01, .together = true};
+    EXPECT_EQ(wantedOf(layersOf(hasty()), few), "8+2");
+}
+
 TEST(LayerShares, WhatAddsNothingIsNotMadeBetter) {
     EXPECT_EQ(wantedOf(layersOf(direct(0.02), direct(0.02).weighing(0.01f))), "8+2, 2+2 done");
     EXPECT_EQ(wantedOf(layersOf(direct(0.02), direct(0.02).switchedOff())), "8+2, 2+2 done");
