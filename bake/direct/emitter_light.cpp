@@ -193,6 +193,8 @@ PointTimes EmitterLight::traceOnCpu(const LightBuffers& light, const Work& work,
     const HostEmitters emitters{.points = hostPoints(light, rays, work.together, work.penumbra, on),
                                 .polygons = {group.polygons.as<shader::EmitterPolygon>(), group.picks},
                                 .picks = picks_.as<glm::vec4>(),
+                                .near = picks_.as<glm::vec4>() +
+                                        size_t{batchChunks_ / work.together} * group.picks * kChunk,
                                 .pointCount = group.points};
     return tracePointsOnCpu(
         on, rays, [&] { sampleEmitters(on.pool, emitters); }, [&] { gatherEmitters(on.pool, emitters); });

@@ -82,7 +82,7 @@ private:
         bool all = true;     // pick i is mesh light i
         bool whole = false;  // Wholes serves it
         uint32_t targets() const { return picks * points; }
-        uint32_t picksRoom() const { return whole ? 2 * picks : picks; } // with those of near points
+        uint32_t picksRoom() const { return whole || all ? 2 * picks : picks; } // with what is near
         uint32_t picksOf(uint32_t together) const { return all ? picks : picks * together; }
         uint32_t pointsOf(uint32_t together) const { return all ? points * together : points; }
     };

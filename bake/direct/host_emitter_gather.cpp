@@ -48,16 +48,20 @@ void gatherChunk(const HostEmitters& work, uint32_t chunk) {
         for (uint32_t i = 0; i < kChunk; ++i) {
             const glm::vec3 light(picks[i]);
             const float whole = picks[i].w;
-            if (light == glm::vec3(0.0f) || !(whole > 0.0f)) continue;
+            if (light == glm::vec3(0.0f) || whole == 0.0f) continue;
+            // Each replicate's points start elsewhere, and know what is near from there.
+            const glm::vec4* const near =
+                whole < 0.0f ? &work.near[(chunk * count + k) * kChunk + i] : nullptr;
             const float points =
                 static_cast<float>(work.pointCount * taken[i] / kReplicates); // of each replicate
             gathered[i].note(k, sums.visible[i] > 0.0f, sums.visible[i] < sums.all[i]);
             for (uint32_t q = 0; q < kReplicates; ++q)
                 gathered[i].value[q] +=
-                    light * (static_cast<float>(taken[i]) *
-                             shader::seenLight(whole, points, sums.part[q][i], sums.seen[q][i], sums.all[i],
-                                               sums.visible[i]) /
-                             whole);
+                    light *
+                    (static_cast<float>(taken[i]) *
+                     shader::seenLight(near ? (*near)[static_cast<int>(q)] : whole, points, sums.part[q][i],
+                                       sums.seen[q][i], sums.all[i], sums.visible[i]) /
+                     std::abs(whole));
         }
     }
     for (uint32_t i = 0; i < kChunk; ++i) {

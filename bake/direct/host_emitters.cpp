@@ -331,9 +331,9 @@ void halveBlock(const PatchLanes& lanes, const SampleDesc& desc, const Loops::Sh
 struct Pick {
     Lane whole; // form factor, without shadows
     SampleLanes sample;
-    Flags near;   // the light is uneven over the patch: it is the mean over where samples start
-    Lane factors; // sum of form factors from there
-    bool shines = false, anyNear = false; // any patch
+    Flags near; // the light is uneven over the patch: it is the mean over where samples start
+    std::array<Lane, shader::kReplicates> factors; // sums of form factors from there
+    bool shines = false, anyNear = false;          // any patch
 
     glm::vec3 light(const EmitterPolygon& e, size_t lane) const { return e.radiance * whole[lane]; }
 };
@@ -372,7 +372,8 @@ void begin(const HostPoints& on, const PatchLanes& lanes, const Loops& loops, co
         pick.shines = pick.shines || shines;
     }
     if (!on.covers || !pick.shines) return;
-    pick.factors.fill(0.0f);
+    for (Lane& factors : pick.factors)
+        factors.fill(0.0f);
     for (uint32_t i = 0; i < kChunk; ++i) {
         pick.near[i] = uneven[i] == shader::kLightUneven ? pick.sample.shines[i] : 0;
         pick.anyNear = pick.anyNear || pick.near[i] != 0;
@@ -395,7 +396,7 @@ void samplePoint(const PatchLanes& lanes, const Loops& loops, const SampleDesc& 
     Lane factors;
     loops.formFactors(lanes, lanes.at, desc.polygon, factors);
     for (uint32_t i = 0; pick.anyNear && i < kChunk; ++i)
-        pick.factors[i] += sample.shines[i] != 0 ? factors[i] : 0.0f;
+        pick.factors[desc.number % shader::kReplicates][i] += sample.shines[i] != 0 ? factors[i] : 0.0f;
     for (uint32_t first = 0; anyUneven && first < kChunk; first += kBlock)
         if (anyOf(sample.uneven.data() + first, kBlock))
             halveBlock(lanes, desc, shape, factors, first, sample);
@@ -440,12 +441,20 @@ void sampleChunk(const HostEmitters& work, uint32_t chunk, const Loops& loops) {
     for (size_t k = 0; k < count; ++k) {
         Pick& pick = picks[k];
         for (uint32_t i = 0; i < kChunk; ++i) {
-            if (pick.anyNear && pick.near[i] != 0) {
-                pick.whole[i] = pick.factors[i] / static_cast<float>(work.pointCount * lanes.taken[i]);
+            const bool near = pick.anyNear && pick.near[i] != 0;
+            if (near) {
+                glm::vec4& wholes = work.near[(chunk * count + k) * kChunk + i];
+                for (uint32_t q = 0; q < shader::kReplicates; ++q)
+                    wholes[static_cast<int>(q)] = pick.factors[q][i] *
+                                                  static_cast<float>(shader::kReplicates) /
+                                                  static_cast<float>(work.pointCount * lanes.taken[i]);
+                pick.whole[i] = 0.25f * (wholes[0] + wholes[1] + wholes[2] + wholes[3]);
                 // A near light is seen as unevenly over a texel as in a penumbra.
                 on.noteLights(first + i, HostGathered::bitOf(k), HostGathered::bitOf(k));
             }
-            picked[k * kChunk + i] = glm::vec4(pick.light(work.polygons[k], i), pick.whole[i]);
+            // What is near is marked, as in shaders/direct/emitter_samples.comp.
+            picked[k * kChunk + i] =
+                glm::vec4(pick.light(work.polygons[k], i), near ? -pick.whole[i] : pick.whole[i]);
         }
     }
 }

@@ -14,6 +14,7 @@ struct HostEmitters {
     HostPoints points;
     std::span<const shader::EmitterPolygon> polygons; // of one group, few of them
     glm::vec4* picks = nullptr; // [chunk - firstChunk][polygons.size()][64], as in EmitterSamplesPush
+    glm::vec4* near = nullptr;  // likewise: of what is near, as in EmitterSamplesPush
     uint32_t pointCount = 0;    // on each polygon and sample pass, a multiple of kReplicates
 
     /// Returns the points on each polygon of all sample passes that are taken together.

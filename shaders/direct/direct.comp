@@ -55,14 +55,19 @@ void gatherPolygons(uint taken) {
             }
         }
         float share = sum > 0.0 ? visible / sum : 0.0;
+        // Each replicate's points start elsewhere, and know what is near from there.
+        vec4 wholes = vec4(0.0);
+        if (all && picked.w < 0.0) wholes = VEC4_AT(push.picks, ((push.firstNear + chunk) * push.pickCount + pick) * kChunk + lane);
         uint bit = light != vec3(0.0) ? 1u << (pick % 32u) : 0u;
         if (visible > 0.0) reachedEmitters |= bit;
         if (visible < sum) hiddenEmitters |= bit;
         if (!all && bit != 0u) reachedEmitters = hiddenEmitters = ~0u; // which are picked is chance
         for (uint q = 0u; q < kReplicates; ++q) {
             float count = float(push.pointCount / push.together * taken / kReplicates); // of each replicate's points
-            if (all && picked.w > 0.0)
-                value[q] += light * (float(taken) * seenLight(picked.w, count, part[q], partVisible[q], sum, visible) / picked.w);
+            if (all && picked.w != 0.0) {
+                float whole = picked.w > 0.0 ? picked.w : wholes[q];
+                value[q] += light * (float(taken) * seenLight(whole, count, part[q], partVisible[q], sum, visible) / abs(picked.w));
+            }
             else if (pick % kReplicates == q) value[q] += light * (share * float(kReplicates) / float(ofSamplePass));
         }
     }

@@ -101,7 +101,7 @@ void main() {
     near = near && shines;
     // A near light is seen as unevenly over a texel as in a penumbra.
     if (near) noteLights(index, 1u << (pick % 32u), 1u << (pick % 32u));
-    float factors = 0.0;
+    vec4 factors = vec4(0.0); // of each replicate's starts
     if (onePoint && mayBeUneven(spread)) {
         vec3 ofAll = allLight(start.position, start.shading);
         VEC4_AT(push.picks, ((push.firstNear + chunk) * push.pickCount + pick) * kChunk + lane) = vec4(ofAll, 0.0);
@@ -119,7 +119,7 @@ void main() {
             uint startOf = startNumber(target, push.samplePass, all ? push.pointCount : push.pickCount * push.pointCount,
                                      all ? 1u : push.pointCount);
             Patch from = startingPatch(p, cover, startOf);
-            if (near) factors += emitterFormFactor(from.position, from.shading, e);
+            if (near) factors[s % kReplicates] += emitterFormFactor(from.position, from.shading, e);
             EmitterSample y = emitterSample(from.position, from.shading, e, sobolPoint(turn, seed));
             // Below the geometric horizon the point is hidden, and not asked for.
             bool above = dot(y.point - from.position, from.normal) > from.offset;
@@ -128,8 +128,13 @@ void main() {
         VEC4_AT(push.targets, (base + s) * kChunk + lane) = point;
     }
     if (near) {
-        whole = factors / float(points);
+        factors *= float(kReplicates) / float(points);
+        whole = 0.25 * (factors.x + factors.y + factors.z + factors.w);
         light = e.radiance * (whole / probability);
+        if (all) {
+            VEC4_AT(push.picks, ((push.firstNear + chunk) * push.pickCount + pick) * kChunk + lane) = factors;
+            whole = -whole;
+        }
     }
     VEC4_AT(push.picks, (chunk * push.pickCount + pick) * kChunk + lane) = vec4(light, whole);
 }

@@ -180,4 +180,26 @@ TEST(NearLights, APanelThatTouchesTheFloorIsNoNoisierThanAnother) {
     }
 }
 
+// A thin strip stands upon the floor. What a texel has of it hangs on where rays start, which is another
+// place in each replicate: all of them see all of the strip, and are off all the same.
+TEST(NearLights, AStripTellsHowFarOffItsTexelsAre) {
+    for (const bool layers : {false, true}) {
+        NearLight near;
+        const int lit = near.maker.material(0.0f, 10.0f);
+        near.maker.blocker({-1.5f, 0.1f, 0}, 0.03f * kZ, 3.0f * kX, lit);
+        near.scene = near.maker.scene();
+        const auto bake = [&](uint32_t samples) {
+            return bakeScene(near.scene, {.size = near.maker.size(),
+                                          .passes = 1,
+                                          .method = Method::Hybrid,
+                                          .samples = samples,
+                                          .layers = layers});
+        };
+        const Baked few = bake(64), many = bake(8192);
+        const double truly = relativeError(few.lighting, many.lighting);
+        EXPECT_GT(truly, 0.02);
+        EXPECT_NEAR(few.progress.error / truly, 1.0, 0.4) << layers;
+    }
+}
+
 } // namespace relume
