@@ -5,8 +5,9 @@ struct EmitterSamplesPush {
     ADDRESS polygons; // EmitterPolygon[]
     ADDRESS nodes;    // EmitterNode[]
     ADDRESS targets;  // vec4[chunkCount][pickCount][pointCount][64]: end of the segment, +- its form factor
-    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's chance, form factor (with `all` negative
-    // where it is near: those of the replicates' starts lie behind `firstNear` chunks); with wholes radiance over it
+    // vec4[chunkCount][pickCount][64]: unshadowed lighting over the pick's chance, form factor (with `all`
+    // negative where it is near: those of the replicates' starts lie behind `firstNear` chunks); with wholes
+    // radiance over it
     ADDRESS picks;
     ADDRESS parts;    // lib/light/penumbra.glsl, as penumbra
     ADDRESS penumbra; // 0: every patch takes every sample pass
