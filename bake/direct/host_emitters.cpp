@@ -452,7 +452,7 @@ void sampleChunk(const HostEmitters& work, uint32_t chunk, const Loops& loops) {
                 // A near light is seen as unevenly over a texel as in a penumbra.
                 on.noteLights(first + i, HostGathered::bitOf(k), HostGathered::bitOf(k));
             }
-            // What is near is marked, as in shaders/direct/emitter_samples.comp.
+            // The sign marks what is near, as in shaders/direct/emitter_samples.comp.
             picked[k * kChunk + i] =
                 glm::vec4(pick.light(work.polygons[k], i), near ? -pick.whole[i] : pick.whole[i]);
         }

@@ -12,8 +12,8 @@ namespace {
 
 // The first level is in haste: this iteration error is small enough for it.
 constexpr double kFirstIterationError = 0.01;
-// That level may be the last one where no more than this is left of each patch's own light, which is told as
-// two to three times what it is where most of it is new light.
+// That level may be the last one where no more than this is left of each patch's own light. Changes whose
+// ratio is 0.5 to 0.6 tell three to two times what is left, as BounceSeries takes a larger one.
 constexpr double kMostLocalHaste = 0.05;
 // The CPU looks for the first time after so many bounces, and then after so many more at most. A look waits
 // for the device, which takes longer than a bounce.
