@@ -9,6 +9,11 @@ namespace relume {
 /// Beyond so many directions or points per patch no error is worth the time.
 constexpr uint32_t kMaxSamplesOfPatch = 65536;
 
+/// A chunk has at most so many sample passes of direct light by a plan of its own. A texel that touches a
+/// lamp, of a hundred times the mean light, needs many times those that all others are content with, and
+/// costs next to nothing.
+constexpr uint32_t kMaxDirectSamplePasses = 65536;
+
 /// Part of the error of light: its variance falls with the sample passes that it is made of.
 struct SampledPart {
     uint32_t samplePasses = 0;   // so far

@@ -70,7 +70,7 @@ DirectPlanRules LinkSchedule::directRules(const LinkState& state) const {
             .linkGain = linksDone(state) ? 0.0 : links / std::max(1.0, state.patches),
             .allowed = kAimOfPlans * state.apart.allowed,
             .least = std::max(1u, state.linkSamplePasses / kMostLinksOfDirect),
-            .most = samplePassesWanted()};
+            .most = rules_.samples > 0 ? samplePassesWanted() : kMaxDirectSamplePasses};
 }
 
 double LinkSchedule::directShare(const LinkState& state, double excess, double localError) const {

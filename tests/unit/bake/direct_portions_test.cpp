@@ -12,9 +12,9 @@ TEST(DirectPortions, SamplePassesAtOnceBeginAtMultiplesOfTheirNumber) {
     EXPECT_EQ(samplePassesAtOnce(0, 1000), kMostTogether);
     EXPECT_EQ(samplePassesAtOnce(4, 100), 4u);
     EXPECT_EQ(samplePassesAtOnce(7, 100), 1u);
-    EXPECT_EQ(samplePassesAtOnce(3 * kMostTogether, 100), kMostTogether);
-    for (uint32_t first = 0; first < 40; ++first)
-        for (uint32_t left = 1; left < 40; ++left) {
+    EXPECT_EQ(samplePassesAtOnce(3 * kMostTogether, 1000), kMostTogether);
+    for (uint32_t first = 0; first < 2 * kMostTogether; ++first)
+        for (uint32_t left = 1; left < 2 * kMostTogether; ++left) {
             const uint32_t count = samplePassesAtOnce(first, left);
             EXPECT_TRUE(count <= left && first % count == 0) << first << " " << left;
         }

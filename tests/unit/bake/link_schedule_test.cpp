@@ -1,6 +1,8 @@
 // What a link solver does next, as a pure function of its state.
 #include "bake/links/link_schedule.h"
 
+#include "bake/gather/sample_plan.h"
+
 #include <gtest/gtest.h>
 
 namespace relume {
@@ -87,6 +89,19 @@ TEST(LinkSchedule, DirectLightOfChunksIsPlannedNowAndThen) {
     EXPECT_FALSE(schedule.plansDirect(state));
     state.linkSamplePasses = 6;
     EXPECT_TRUE(schedule.plansDirect(state)) << "on the ladder";
+}
+
+// A texel that touches a lamp needs more than all others together may have; a number of samples that was
+// asked for holds for everyone.
+TEST(LinkSchedule, ChunksMayHaveMoreDirectLightThanLinks) {
+    const LinkRules apart = with([](LinkRules& r) { r.directApart = true; });
+    const LinkSchedule schedule(apart);
+    EXPECT_EQ(schedule.samplePassesWanted(), kMaxSamplesOfPatch / 16);
+    EXPECT_EQ(schedule.directRules(after(64, 64)).most, kMaxDirectSamplePasses);
+    EXPECT_GE(kMaxDirectSamplePasses, 16 * schedule.samplePassesWanted());
+    LinkRules few = apart;
+    few.samples = 256;
+    EXPECT_EQ(LinkSchedule(few).directRules(after(4, 4)).most, 16u);
 }
 
 // A quarter of two variances of 8 may be left, 4: links that fall to a ninth leave 8 / 9 of that.
