@@ -6,7 +6,8 @@
 
 namespace relume {
 
-/// Beyond so many directions or points per patch no error is worth the time.
+/// Beyond so many directions per patch no error is worth the time. Points on lights have the same limit where
+/// all patches get as many.
 constexpr uint32_t kMaxSamplesOfPatch = 65536;
 
 /// A chunk has at most so many sample passes of direct light by a plan of its own. A texel that touches a

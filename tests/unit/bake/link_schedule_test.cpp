@@ -91,8 +91,8 @@ TEST(LinkSchedule, DirectLightOfChunksIsPlannedNowAndThen) {
     EXPECT_TRUE(schedule.plansDirect(state)) << "on the ladder";
 }
 
-// A texel that touches a lamp needs more than all others together may have; a number of samples that was
-// asked for holds for everyone.
+// A texel that touches a lamp needs more samples than others may have; a number of them that was asked for
+// holds for everyone.
 TEST(LinkSchedule, ChunksMayHaveMoreDirectLightThanLinks) {
     const LinkRules apart = with([](LinkRules& r) { r.directApart = true; });
     const LinkSchedule schedule(apart);
