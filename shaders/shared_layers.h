@@ -104,6 +104,7 @@ struct LayerLocalPush {
     float deviation;   // standard error over the composite's w; 0: texels are counted by their light
     float least;       // what is darker is off relative to this [cd/m^2]
     uint chunkCount;
+    uint size; // edge of the lightmap [texels]
 };
 struct ChunkSumPush {
     ADDRESS values; // float[groups][chunkCount][width]

@@ -37,8 +37,8 @@ struct Deviations {
     std::vector<double> squares;      // of how far off the light is, not relative to it, per chunk
 };
 
-LayerPass::LocalWork workOf(const vk::Buffer& composite, const LocalScale& scale) {
-    return {composite, static_cast<float>(scale.deviation), scale.least};
+LayerPass::LocalWork workOf(const vk::Buffer& composite, const LocalScale& scale, uint32_t size) {
+    return {composite, static_cast<float>(scale.deviation), scale.least, size};
 }
 
 LocalScale scaleOf(const Shown& all, double error) {
@@ -61,14 +61,14 @@ LocalError localErrorOf(WorkerPool& pool, Deviations off, std::span<const double
 constexpr size_t kSlice = 4096;
 static_assert(kSlice % shader::kChunk == 0);
 
-// Calls function(patch index, slice) for each patch that is shown.
+// Calls function(first patch, patches, slice) for each chunk of so many patches in all.
 template<typename Part, typename Function>
-std::vector<Part> overSlices(WorkerPool& pool, std::span<const shader::Patch> patches, Function&& function) {
-    std::vector<Part> parts((patches.size() + kSlice - 1) / kSlice);
+std::vector<Part> overSlices(WorkerPool& pool, size_t patches, Function&& function) {
+    std::vector<Part> parts((patches + kSlice - 1) / kSlice);
     pool.run(static_cast<uint32_t>(parts.size()), [&](uint32_t k) {
-        const size_t end = std::min(patches.size(), (size_t{k} + 1) * kSlice);
-        for (size_t i = size_t{k} * kSlice; i < end; ++i)
-            if (shader::patchIsShown(patches[i].flags)) function(i, parts[k]);
+        const size_t end = std::min(patches, (size_t{k} + 1) * kSlice);
+        for (size_t first = size_t{k} * kSlice; first < end; first += shader::kChunk)
+            function(first, std::min<size_t>(shader::kChunk, end - first), parts[k]);
     });
     return parts;
 }
@@ -78,14 +78,18 @@ Shown shownOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span<cons
         double light = 0, square = 0, count = 0;
         std::array<uint32_t, shader::kLightBins> lights{};
     };
-    const std::vector<Slice> slices = overSlices<Slice>(pool, patches, [&](size_t i, Slice& slice) {
-        const float own = meanOf(light[i]);
-        slice.light += own;
-        slice.square += double{light[i].w} * light[i].w;
-        slice.count += 1;
-        ++slice.lights[shader::binOf(own, shader::kLeastLightOctave, shader::kLightBinsPerOctave,
-                                     shader::kLightBins)];
-    });
+    const auto add = [&](size_t first, size_t count, Slice& slice) {
+        for (size_t i = first; i < first + count; ++i) {
+            if (!shader::patchIsShown(patches[i].flags)) continue;
+            const float own = meanOf(light[i]);
+            slice.light += own;
+            slice.square += double{light[i].w} * light[i].w;
+            slice.count += 1;
+            ++slice.lights[shader::binOf(own, shader::kLeastLightOctave, shader::kLightBinsPerOctave,
+                                         shader::kLightBins)];
+        }
+    };
+    const std::vector<Slice> slices = overSlices<Slice>(pool, patches.size(), add);
     Shown all{.lights = std::vector<uint32_t>(shader::kLightBins, 0)};
     for (const Slice& slice : slices) {
         all.light += slice.light;
@@ -97,23 +101,56 @@ Shown shownOf(WorkerPool& pool, std::span<const glm::vec4> light, std::span<cons
     return all;
 }
 
+// Returns the square of how far each of these texels of a chunk is off relative to its light, as the mean
+// over itself and those next to it: in the edge of a shadow few of a lamp's points are seen, and the
+// replicates of many a texel agree by chance. layer_local.comp does the same.
+std::array<double, shader::kChunk> squaresOf(std::span<const glm::vec4> light,
+                                             std::span<const shader::Patch> patches, uint32_t size,
+                                             const LocalScale& scale) {
+    std::array<double, shader::kChunk> own{}, mean{};
+    std::array<uint32_t, shader::kChunk> texels{};
+    for (size_t i = 0; i < patches.size(); ++i) {
+        const double off = scale.of(light[i]);
+        own[i] = off * off;
+        texels[i] =
+            shader::patchIsShown(patches[i].flags) ? shader::patchTexel(patches[i].flags) : shader::kNoTexel;
+    }
+    for (size_t i = 0; i < patches.size(); ++i) {
+        uint32_t count = 0;
+        const size_t end = std::min<size_t>(patches.size(), i + shader::kTileReach + 1);
+        for (size_t k = i - std::min<size_t>(i, shader::kTileReach); k < end; ++k) {
+            if (!shader::texelsTouch(texels[i], texels[k], size)) continue;
+            mean[i] += own[k];
+            ++count;
+        }
+        mean[i] /= std::max(count, 1u);
+    }
+    return mean;
+}
+
 Deviations deviationsOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, const LocalScale& scale) {
+                        std::span<const shader::Patch> patches, uint32_t size, const LocalScale& scale) {
     const size_t chunks = (patches.size() + shader::kChunk - 1) / shader::kChunk;
     Deviations all{std::vector<double>(shader::kErrorBins, 0.0), std::vector<ChunkSquares>(chunks),
                    std::vector<double>(chunks, 0.0)};
     struct Bins {
         std::array<uint32_t, shader::kErrorBins> bins{};
     };
-    const std::vector<Bins> parts = overSlices<Bins>(pool, patches, [&](size_t i, Bins& part) {
-        const double off = scale.of(light[i]), absolute = scale.deviation * light[i].w;
-        ++part.bins[shader::binOf(static_cast<float>(off), shader::kLeastErrorOctave,
-                                  shader::kErrorBinsPerOctave, shader::kErrorBins)];
-        ChunkSquares& chunk = all.chunks[i / shader::kChunk]; // of one slice alone
-        chunk.texels += 1;
-        chunk.noise += off * off;
-        all.squares[i / shader::kChunk] += absolute * absolute;
-    });
+    const auto add = [&](size_t first, size_t count, Bins& part) {
+        const auto squares =
+            squaresOf(light.subspan(first, count), patches.subspan(first, count), size, scale);
+        ChunkSquares& chunk = all.chunks[first / shader::kChunk];
+        for (size_t i = 0; i < count; ++i) {
+            if (!shader::patchIsShown(patches[first + i].flags)) continue;
+            const double absolute = scale.deviation * light[first + i].w;
+            ++part.bins[shader::binOf(static_cast<float>(std::sqrt(squares[i])), shader::kLeastErrorOctave,
+                                      shader::kErrorBinsPerOctave, shader::kErrorBins)];
+            chunk.texels += 1;
+            chunk.noise += squares[i];
+            all.squares[first / shader::kChunk] += absolute * absolute;
+        }
+    };
+    const std::vector<Bins> parts = overSlices<Bins>(pool, patches.size(), add);
     for (const Bins& part : parts)
         for (size_t bin = 0; bin < all.bins.size(); ++bin)
             all.bins[bin] += part.bins[bin];
@@ -123,9 +160,10 @@ Deviations deviationsOf(WorkerPool& pool, std::span<const glm::vec4> light,
 } // namespace
 
 LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, double error, std::span<const double> bias) {
+                        std::span<const shader::Patch> patches, uint32_t size, double error,
+                        std::span<const double> bias) {
     const LocalScale scale = scaleOf(shownOf(pool, light, patches), error);
-    return localErrorOf(pool, deviationsOf(pool, light, patches, scale), bias);
+    return localErrorOf(pool, deviationsOf(pool, light, patches, size, scale), bias);
 }
 
 namespace {
@@ -176,7 +214,8 @@ private:
     template<typename Record>
     void count(const LocalScale& scale, const Record& recordMore) const {
         VkCommandBuffer cmd = kit_.commands.begin();
-        pass_.recordLocal(cmd, kit_.input.light, workOf(composite_, scale), bins_, kit_.buffers.chunkSums);
+        pass_.recordLocal(cmd, kit_.input.light, workOf(composite_, scale, kit_.input.patches.scene.size),
+                          bins_, kit_.buffers.chunkSums);
         recordMore(cmd);
         kit_.run(cmd);
     }
@@ -244,19 +283,20 @@ void CompositeReport::measure(const Layers& layers) {
     const std::vector<double> bias = biasOf(shining, composite.alike);
     WorkerPool& pool = kit_.input.device.workers();
     const double error = std::sqrt(std::max(0.0, square));
+    const uint32_t size = kit_.input.patches.scene.size;
     LocalScale scale;
     if (kit_.gatherPass.onCpu()) {
         const std::vector<glm::vec4>& light = mixer_.light(layers);
         const std::vector<shader::Patch>& patches = kit_.input.patches.scene.patches;
         scale = scaleOf(shownOf(pool, light, patches), error);
-        local_ = localErrorOf(pool, deviationsOf(pool, light, patches, scale), bias);
+        local_ = localErrorOf(pool, deviationsOf(pool, light, patches, size, scale), bias);
     } else {
         const DeviceCounts counts(kit_, pass_, mixer_.mixed(layers));
         scale = scaleOf(counts.shown(chunkSums_), error);
         local_ = localErrorOf(pool, counts.deviations(scale, !bias.empty()), bias);
     }
     const double asked = kit_.settings.localError;
-    if (asked > 0 && local_->p95 > asked) worths_ = worthsOf(layers, workOf(mixer_.composite(), scale));
+    if (asked > 0 && local_->p95 > asked) worths_ = worthsOf(layers, workOf(mixer_.composite(), scale, size));
 }
 
 // Asks the device what the variances of each layer are worth where they are. The mixer has mixed the

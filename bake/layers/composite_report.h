@@ -14,13 +14,13 @@ namespace relume {
 
 /// Returns the local error of the composite. `light` holds a patch's light and how large its error may be
 /// beside those of others (vec4: R, G, B, and what is proportional to the standard error), `patches` tells
-/// which ones are shown, and `error` is the relRMSE of the whole that comes from samples: it says how large
-/// all these errors are. They are taken to be normally distributed. All is 0 where nothing is off, and 1
-/// where nothing is lit. `bias` is that of smoothing: it holds for each chunk the sum over its patches of the
-/// square of what the mean of R, G and B is off by it, as it was estimated [(cd/m^2)^2]; empty: there is
-/// none.
+/// which ones are shown and where in a lightmap of `size` x `size` texels, and `error` is the relRMSE of the
+/// whole that comes from samples: it says how large all these errors are. They are taken to be normally
+/// distributed. All is 0 where nothing is off, and 1 where nothing is lit. `bias` is that of smoothing: it
+/// holds for each chunk the sum over its patches of the square of what the mean of R, G and B is off by it,
+/// as it was estimated [(cd/m^2)^2]; empty: there is none.
 LocalError localErrorOf(WorkerPool& pool, std::span<const glm::vec4> light,
-                        std::span<const shader::Patch> patches, double error,
+                        std::span<const shader::Patch> patches, uint32_t size, double error,
                         std::span<const double> bias = {});
 
 /// Has the schedule decide how far layers go, and tells how far the composite is off. Its local error takes a

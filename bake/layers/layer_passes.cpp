@@ -85,7 +85,8 @@ void LayerPass::recordLocal(VkCommandBuffer cmd, const LightBuffers& light, cons
                                       .chunkSums = chunkSums.address(),
                                       .deviation = work.deviation,
                                       .least = work.least,
-                                      .chunkCount = light.chunkCount};
+                                      .chunkCount = light.chunkCount,
+                                      .size = work.size};
     dispatchChunks(local_, cmd, push, light.chunkCount);
 }
 

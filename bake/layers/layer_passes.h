@@ -52,9 +52,10 @@ public:
         const vk::Buffer& composite; // vec4 per patch, as recordMix makes it
         float deviation = 0;         // standard error over the composite's w
         float least = 0;             // what is darker is off relative to this [cd/m^2]
+        uint32_t size = 0;           // edge of the lightmap [texels]
     };
-    /// Counts texels in bins, which it clears, by how far they are off, or by their light where the deviation
-    /// is 0, and makes in chunkSums what LayerLocalPush says.
+    /// Counts texels in bins, which it clears, by how far they and those next to them are off, or by their
+    /// light where the deviation is 0, and makes in chunkSums what LayerLocalPush says.
     void recordLocal(VkCommandBuffer cmd, const LightBuffers& light, const LocalWork& work,
                      const vk::Buffer& bins, const vk::Buffer& chunkSums) const;
     /// Says what is asked of it, too.

@@ -13,22 +13,38 @@ layout(local_size_x = 64) in;
 const float kMostOff = 1e15;
 
 shared vec4 terms[kChunk];
+shared float squares[kChunk];
+shared uint texels[kChunk];
+
+// Returns the mean square of how far this texel and those next to it are off, as squaresOf() does on the CPU.
+float squareAround(uint lane) {
+    float sum = 0.0, count = 0.0;
+    for (uint k = lane - min(lane, kTileReach); k < min(kChunk, lane + kTileReach + 1u); ++k) {
+        if (!texelsTouch(texels[lane], texels[k], push.size)) continue;
+        sum += squares[k];
+        count += 1.0;
+    }
+    return sum / count;
+}
 
 void main() {
     uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x, lane = gl_LocalInvocationID.x;
     if (chunk >= push.chunkCount) return;
     uint index = chunk * kChunk + lane;
+    vec4 all = VEC4_AT(push.composite, index);
+    uint flags = loadPatch(push.patches, index).flags;
+    float own = (all.r + all.g + all.b) / 3.0;
+    float off = min(push.deviation * all.w / max(own, push.least), kMostOff);
+    squares[lane] = off * off;
+    texels[lane] = patchIsShown(flags) ? patchTexel(flags) : kNoTexel;
+    barrier();
     terms[lane] = vec4(0.0);
-    if (patchIsShown(loadPatch(push.patches, index).flags)) {
-        vec4 all = VEC4_AT(push.composite, index);
-        float own = (all.r + all.g + all.b) / 3.0;
+    if (patchIsShown(flags)) {
         uint bin = chunk % kBinCopies * kBinsOfCopy;
         if (push.deviation > 0.0) {
-            own = max(own, push.least);
-            float off = push.deviation * all.w / own;
-            bin += kLightBins + binOf(off, kLeastErrorOctave, kErrorBinsPerOctave, kErrorBins);
-            off = min(off, kMostOff);
-            terms[lane] = vec4(1.0, off * off, all.w * all.w, 0.0);
+            float square = squareAround(lane);
+            bin += kLightBins + binOf(sqrt(square), kLeastErrorOctave, kErrorBinsPerOctave, kErrorBins);
+            terms[lane] = vec4(1.0, square, all.w * all.w, 0.0);
         } else {
             bin += binOf(own, kLeastLightOctave, kLightBinsPerOctave, kLightBins);
             terms[lane] = vec4(1.0, own, all.w * all.w, 0.0);

@@ -21,3 +21,13 @@ FUNCTION uint binOf(float value, float leastOctave, float binsPerOctave, uint bi
     float place = (log2(value) - leastOctave) * binsPerOctave;
     return uint(clamp(place, float(0u), float(bins - 1u)));
 }
+
+// Texels of one tile that touch are no further apart in a chunk's order than a row of the tile and one.
+const uint kTileReach = 9u;
+
+// Says whether these texels of a lightmap of `size` texels along an edge are one, or touch; kNoTexel touches none.
+FUNCTION bool texelsTouch(uint a, uint b, uint size) {
+    if (a == kNoTexel || b == kNoTexel) return false;
+    int rows = int(a / size) - int(b / size), columns = int(a % size) - int(b % size);
+    return rows * rows <= 1 && columns * columns <= 1;
+}

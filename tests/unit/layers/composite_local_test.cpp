@@ -14,10 +14,18 @@ constexpr double kOf95 = 1.959964, kOf99 = 2.575829;
 // Deviations are counted in bins of a sixteenth of an octave.
 constexpr double kBin = 0.03;
 
+constexpr uint32_t kSize = 512; // of the lightmap [texels]
+
 shader::Patch shown() {
     shader::Patch patch{};
     patch.flags = shader::kPatchSends;
     return patch;
+}
+
+// The place of a patch where all texels are covered: in tiles of 8 x 8.
+uint32_t texelOf(size_t patch) {
+    const size_t tile = patch / shader::kChunk, in = patch % shader::kChunk, tiles = kSize / 8;
+    return static_cast<uint32_t>((tile / tiles * 8 + in / 8) * kSize + tile % tiles * 8 + in % 8);
 }
 
 struct Texels {
@@ -25,11 +33,14 @@ struct Texels {
     std::vector<shader::Patch> patches;
     void add(size_t count, float own, float off, const shader::Patch& patch = shown()) {
         light.insert(light.end(), count, glm::vec4(own, own, own, off));
-        patches.insert(patches.end(), count, patch);
+        for (size_t i = 0; i < count; ++i) {
+            patches.push_back(patch);
+            patches.back().flags |= texelOf(patches.size() - 1) << shader::kTexelShift;
+        }
     }
     LocalError at(double error, uint32_t threads = 2) const {
         WorkerPool pool(threads);
-        return localErrorOf(pool, light, patches, error);
+        return localErrorOf(pool, light, patches, kSize, error);
     }
 };
 
@@ -84,10 +95,10 @@ TEST(CompositeLocalError, HasTheBiasOfSmoothingWhereItIs) {
     const double noise = 0.01; // relative
     for (size_t c = 0; c < bias.size(); c += 8)
         bias[c] = shader::kChunk * std::pow(2.0 * noise * 0.5, 2.0);
-    const LocalError alone = localErrorOf(pool, texels.light, texels.patches, noise);
+    const LocalError alone = localErrorOf(pool, texels.light, texels.patches, kSize, noise);
     const LocalError none =
-        localErrorOf(pool, texels.light, texels.patches, noise, std::vector<double>(800, 0.0));
-    const LocalError both = localErrorOf(pool, texels.light, texels.patches, noise, bias);
+        localErrorOf(pool, texels.light, texels.patches, kSize, noise, std::vector<double>(800, 0.0));
+    const LocalError both = localErrorOf(pool, texels.light, texels.patches, kSize, noise, bias);
     EXPECT_EQ(none.p95, alone.p95);
     // Of one in eight with a deviation of 2.236 and seven with 1 a twentieth are beyond 2.396.
     expectWithinABin(both.p95, 2.396 * noise);
@@ -107,8 +118,32 @@ TEST(CompositeLocalError, HasNoBiasOfBrightTexelsInDarkOnes) {
     const double noise = 0.01, mean = 50.5, off = noise * mean * std::sqrt(2.0), size = off * off;
     const std::vector<double> bias(kChunks, shader::kChunk / 2.0 * size);
     WorkerPool pool(2);
-    const LocalError local = localErrorOf(pool, texels.light, texels.patches, noise, bias);
+    const LocalError local = localErrorOf(pool, texels.light, texels.patches, kSize, noise, bias);
     EXPECT_NEAR(local.p95, kOf95 * std::sqrt(2.0) * off / 100.0, 0.1 * local.p95);
+}
+
+// Replicates of most texels agree by chance, as in the edge of a lamp's shadow: those next to them tell how
+// far they are off.
+TEST(CompositeLocalError, IsThatOfNeighboursWhereReplicatesAgreeByChance) {
+    Texels texels;
+    for (size_t i = 0; i < size_t{100} * shader::kChunk; ++i)
+        texels.add(1, 1.0f, i % 8 % 3 == 1 && i / 8 % 8 % 3 == 1 ? 3.0f : 0.0f); // no two of them touch
+    const double share = 9.0 / 64, off = 0.01 / std::sqrt(share); // of those that tell something
+    const LocalError local = texels.at(0.01);
+    // Each texel has one of them among its neighbours, which are nine, six or four.
+    EXPECT_GT(local.p50, 0.6 * off / 3.0);
+    EXPECT_LT(local.p95, 2.0 * off / 2.0);
+}
+
+// Two surfaces have a chunk in common, with hundreds of texels of the lightmap between them.
+TEST(CompositeLocalError, IsNotThatOfTexelsElsewhere) {
+    Texels texels;
+    for (size_t i = 0; i < size_t{100} * shader::kChunk; ++i) {
+        texels.add(1, 1.0f, i % 2 == 0 ? 1.0f : 0.0f);
+        if (i % 2 == 0) texels.patches.back().flags ^= (kSize / 2 * kSize) << shader::kTexelShift;
+    }
+    const LocalError local = texels.at(0.01);
+    EXPECT_EQ(local.p50, 0.0);
 }
 
 TEST(CompositeLocalError, LeavesOutWhatIsNotShown) {
