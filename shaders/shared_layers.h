@@ -47,7 +47,7 @@ struct LayerWeight {
 struct LayerMixPush {
     ADDRESS layers; // LayerWeight[layerCount]
     ADDRESS base;   // vec4[], added; 0: nothing
-    ADDRESS light;  // vec4[], written: lighting, at most its standard error
+    ADDRESS light;  // vec4[], written: lighting, its standard error if those of layers are independent
     uint layerCount;
     uint patchCount;
 };

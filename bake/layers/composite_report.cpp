@@ -273,16 +273,39 @@ bool CompositeReport::tellAtEnd(const Layers& layers, SolverProgress& progress) 
     return true;
 }
 
-void CompositeReport::measure(const Layers& layers) {
+namespace {
+
+std::vector<Layer*> shiningOf(const CompositeReport::Layers& layers) {
     std::vector<Layer*> shining;
     for (const std::unique_ptr<Layer>& layer : layers)
         if (layer->shines()) shining.push_back(layer.get());
-    const Composite composite = compositeOf(shining, &products_);
+    return shining;
+}
+
+// Returns what of the composite's relRMSE comes from samples.
+double sampledError(const Composite& composite) {
     const double square = composite.error * composite.error - composite.iteration * composite.iteration -
                           composite.bias * composite.bias;
+    return std::sqrt(std::max(0.0, square));
+}
+
+} // namespace
+
+double CompositeReport::deviation(const Layers& layers, std::span<const glm::vec4> light) {
+    const std::vector<Layer*> shining = shiningOf(layers);
+    if (!std::all_of(shining.begin(), shining.end(), [](const Layer* layer) { return layer->has(); }))
+        return 1.0;
+    const Composite composite = compositeOf(shining, &products_);
+    WorkerPool& pool = kit_.input.device.workers();
+    return scaleOf(shownOf(pool, light, kit_.input.patches.scene.patches), sampledError(composite)).deviation;
+}
+
+void CompositeReport::measure(const Layers& layers) {
+    const std::vector<Layer*> shining = shiningOf(layers);
+    const Composite composite = compositeOf(shining, &products_);
     const std::vector<double> bias = biasOf(shining, composite.alike);
     WorkerPool& pool = kit_.input.device.workers();
-    const double error = std::sqrt(std::max(0.0, square));
+    const double error = sampledError(composite);
     const uint32_t size = kit_.input.patches.scene.size;
     LocalScale scale;
     if (kit_.gatherPass.onCpu()) {

@@ -39,6 +39,9 @@ public:
     /// Measures the local error before a bake ends, where that was left out, and decides anew. Tells whether
     /// it has.
     bool tellAtEnd(const Layers& layers, SolverProgress& progress);
+    /// Returns the standard error over the w of `light`, the sum of the layers as they are: their errors may
+    /// have much in common, which w does not know. It is 1 while a layer is missing.
+    double deviation(const Layers& layers, std::span<const glm::vec4> light);
 
 private:
     bool wantsLocalError() const { return !kit_.settings.live || kit_.settings.localError > 0; }

@@ -354,9 +354,11 @@ LiveLight LayerSolver::liveLight() {
 }
 
 std::vector<float> LayerSolver::errors() {
+    const std::vector<glm::vec4> light = this->light();
+    const auto deviation = static_cast<float>(report_.deviation(layers(), light));
     std::vector<float> result;
-    for (const glm::vec4& v : light())
-        result.push_back(v.w);
+    for (const glm::vec4& v : light)
+        result.push_back(deviation * v.w);
     return result;
 }
 

@@ -26,7 +26,7 @@ public:
     ~LayerSolver() override;
 
     void step() override;
-    /// Returns the sum of all layers; w is an upper bound of the standard error.
+    /// Returns the sum of all layers; w is its standard error if those of the layers were independent.
     const std::vector<glm::vec4>& light() override { return mixer_.light(layers()); }
     std::vector<float> errors() override;
     void setPriority(std::vector<uint8_t> chunkSeen) override;

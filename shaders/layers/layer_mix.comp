@@ -1,5 +1,5 @@
-// Mixes the layers to be shown: the sum of each one's light times its weight. Layers share their links, so
-// that their errors may have one sign: they are added as they are. There is one invocation per patch.
+// Mixes the layers to be shown: the sum of each one's light times its weight. Their errors are taken to be independent,
+// so that variances add up. There is one invocation per patch.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "lib/preamble.glsl"
@@ -12,10 +12,13 @@ void main() {
     uint index = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * 64u + gl_LocalInvocationID.x;
     if (index >= push.patchCount) return;
     vec4 sum = vec4IfAny(push.base, index, push.layers);
+    sum.w *= sum.w;
     for (uint i = 0u; i < push.layerCount; ++i) {
         LayerWeight layer = Weights(push.layers).items[i];
         vec4 light = VEC4_AT(layer.light, index);
-        sum += vec4(layer.weight * light.rgb, max(max(layer.weight.r, layer.weight.g), layer.weight.b) * light.w);
+        float off = max(max(layer.weight.r, layer.weight.g), layer.weight.b) * light.w;
+        sum += vec4(layer.weight * light.rgb, off * off);
     }
+    sum.w = sqrt(sum.w);
     VEC4_AT(push.light, index) = sum;
 }

@@ -44,6 +44,31 @@ TEST(Layers, ConvergeToWhatTheHybridConvergesTo) {
     EXPECT_LE(relativeError(bake.image(), expected), 0.002);
 }
 
+// Lights at one place have all their indirect error in common, four times that of one of them. If layers were
+// taken to be independent, patches would tell half of it.
+TEST(Layers, TellOfEachPatchWhatTheyTellOfAll) {
+    Scene scene = room();
+    for (Material& material : scene.materials)
+        material.emission = glm::vec3(0.0f);
+    scene.lights.assign(4, lightAt(LightType::Point, {1.5f, 1.5f, 1.5f}, 3.0f, "Bulb"));
+    BakeDesc desc = kQuick;
+    desc.smooth = false;
+    Layered bake(scene, desc);
+    bake.finish();
+    const std::vector<shader::Patch>& patches = bake.baker().patches().scene.patches;
+    const std::vector<float> errors = bake.solver().errors();
+    const Light4 light = bake.light();
+    double squares = 0, sum = 0, count = 0;
+    for (size_t i = 0; i < patches.size(); ++i) {
+        if (!shader::patchIsShown(patches[i].flags)) continue;
+        squares += double{errors[i]} * errors[i];
+        sum += (light[i].r + light[i].g + light[i].b) / 3.0;
+        count += 1;
+    }
+    ASSERT_GT(bake.progress().error, 0.0);
+    EXPECT_NEAR(std::sqrt(squares / count) / (sum / count) / bake.progress().error, 1.0, 0.05);
+}
+
 // A step of many sample passes lasts: what is told of its rays meanwhile must not stand still, nor change the
 // count.
 TEST(Layers, CountRaysWhileDirectLightIsSampled) {
